@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <memory>
+#include <string_view>
+#include <variant>
+
+#include "capture/pose/board.h"
+#include "capture/pose/trajectory.h"
+#include "capture/source/frame.h"
+#include "core/geometry/camera.h"
+
+namespace sheen::capture {
+
+/// Why a frame got no pose. The names appear in reports.
+enum class PoseRejection { no_tags, too_few_tags, reprojection, blur, no_pose_in_file };
+std::string_view name_of(PoseRejection rejection);
+
+/// Pose of the camera for one frame, with what speaks for it.
+struct FramePose {
+  Eigen::Isometry3d camera_from_stage = Eigen::Isometry3d::Identity();
+  int tags = 0;                 ///< tags that carried the estimate; 0 for poses from a file
+  double reprojection_px = 0;   ///< root mean square over the corners that carried it
+  double blur_px = 0;           ///< width of the tags' edges (10-90 %), 0 for poses from a file
+};
+
+using PoseResult = std::variant<FramePose, PoseRejection>;
+
+/// What a frame must show to be posed.
+struct PoseGate {
+  int min_tags = 2;                ///< fewer known tags are refused, >= 1
+  double max_reprojection_px = 2;  ///< joint RMS above this is refused, px, > 0
+  double max_blur_px = 6;          ///< wider tag edges are refused, px, > 0
+};
+
+/// Frame -> pose. One estimator serves one recording in order.
+class PoseEstimator {
+ public:
+  virtual ~PoseEstimator() = default;
+  virtual PoseResult estimate(const Frame& frame) = 0;
+};
+
+/// Detects the board's tags and solves one robust joint pose over all their corners.
+std::unique_ptr<PoseEstimator> make_tag_pose_estimator(const Board& board,
+                                                       const core::CameraModel& camera,
+                                                       const PoseGate& gate);
+
+/// Looks poses up in a file.
+std::unique_ptr<PoseEstimator> make_recorded_pose_estimator(Trajectory trajectory, double fps);
+
+}  // namespace sheen::capture

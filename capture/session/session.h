@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "capture/source/frame_source.h"
+#include "core/geometry/camera.h"
+
+namespace sheen::capture {
+
+/// A session folder (docs/formats.md, "session"): what session.json says, checked.
+struct Session {
+  std::filesystem::path folder;
+  /// Exactly one of the two is set: a video file, or a printf pattern such as images/%04d.png.
+  std::optional<std::filesystem::path> video;
+  std::optional<std::string> image_pattern;
+  std::optional<double> fps;
+  core::CameraModel camera;
+  std::optional<std::filesystem::path> board;  ///< board.yaml
+  std::optional<std::filesystem::path> poses;  ///< poses.txt; wins over the board
+  std::filesystem::path mesh;
+  Eigen::Isometry3d stage_from_object = Eigen::Isometry3d::Identity();
+  std::vector<std::string> warnings;  ///< unknown keys, one line each
+};
+
+/// Reads and checks session.json and camera.yaml. Throws core::Error (bad_input) with one clear line:
+/// missing file, later major version, path that leaves the folder, transform that is not rigid.
+Session open_session(const std::filesystem::path& folder);
+
+/// Frames [start, end) of the session in recorded order; `index` counts from the recording's first
+/// frame whatever `start` is. Throws core::Error for a missing or truncated video, a picture whose
+/// size differs from camera.yaml.
+std::unique_ptr<FrameSource> open_frames(const Session& session, int start = 0,
+                                         std::optional<int> end = std::nullopt);
+
+}  // namespace sheen::capture

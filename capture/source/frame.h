@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <opencv2/core/mat.hpp>
+
+namespace sheen::capture {
+
+/// One picture as it left the camera.
+struct Frame {
+  cv::Mat image;    ///< CV_8UC3, BGR, distorted as the lens made it
+  double time_s = 0;  ///< since the first frame
+  int index = 0;      ///< position in the recording, counted from 0
+};
+
+}  // namespace sheen::capture

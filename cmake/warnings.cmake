@@ -1,0 +1,6 @@
+# One place for what the compiler is asked to say; every room links it.
+add_library(sheen_warnings INTERFACE)
+target_compile_options(sheen_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion
+  -Wnon-virtual-dtor -Wold-style-cast -Woverloaded-virtual
+  $<$<BOOL:${SHEEN_WERROR}>:-Werror>)

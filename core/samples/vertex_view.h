@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "core/geometry/tangent_frame.h"
+#include "core/mesh/mesh.h"
+
+namespace sheen::core {
+
+/// Why a vertex gives no sample in a view; `none` means it does (so far).
+enum class VertexRejection : std::uint8_t { none, outside_image, back_facing, grazing, occluded };
+inline constexpr std::size_t kVertexRejectionCount = 5;
+std::string_view name_of(VertexRejection rejection);
+
+/// Which vertices may become samples.
+struct SamplingLimits {
+  float min_cosine = 0.2f;       ///< grazing cut-off: smallest cosine between normal and view, [0, 1)
+  float border_margin_px = 2.0f; ///< samples nearer to the picture's border are refused, >= 1
+};
+
+/// All vertices of a mesh seen by one camera. Structure of arrays, one entry per vertex; entries
+/// after a rejection are unspecified except `rejection`.
+struct VertexView {
+  std::vector<float> x_px, y_px;  ///< pixel, OpenCV's convention
+  std::vector<float> depth_m;     ///< z in the camera frame
+  std::vector<float> u, v;        ///< view direction on the patch's unit disc
+  std::vector<VertexRejection> rejection;
+};
+
+/// Frames of all vertices of a mesh, in order.
+std::vector<TangentFrame> tangent_frames(const Mesh& mesh);
+
+/// Position of the camera in the object frame.
+Eigen::Vector3f eye_in_object(const Eigen::Isometry3d& camera_from_object);
+
+/// Projects every vertex and applies the limits that need no other vertex (all but `occluded`).
+/// Reuses the storage of `view`. Independent of the number of threads.
+void project_vertices(const Mesh& mesh, const std::vector<TangentFrame>& frames,
+                      const CameraModel& camera, const Eigen::Isometry3d& camera_from_object,
+                      const SamplingLimits& limits, int threads, VertexView& view);
+
+/// Counts of each VertexRejection, indexed by its value.
+std::array<std::size_t, kVertexRejectionCount> count_rejections(const VertexView& view);
+
+}  // namespace sheen::core

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "core/mesh/mesh.h"
+#include "fitting/light_field.h"
+
+namespace sheen::fitting {
+
+/// A light field and the surface it lies on.
+struct Model {
+  core::Mesh mesh;
+  std::unique_ptr<const LightField> light_field;
+};
+
+/// Writes a binary glTF 2.0 file with the extension SHEEN_surface_light_field (docs/formats.md,
+/// "model"), beside its final name and then moved into place. Equal models give equal bytes.
+void write_model(const std::filesystem::path& path, const core::Mesh& mesh,
+                 const LightField& light_field);
+
+/// Reads it back, bit by bit what was written. Throws core::Error (bad_input) for truncated, altered or
+/// foreign files.
+Model read_model(const std::filesystem::path& path);
+
+}  // namespace sheen::fitting

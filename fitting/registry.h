@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/mesh/neighbours.h"
+#include "fitting/iwls/options.h"
+#include "fitting/representation.h"
+
+namespace sheen::fitting {
+
+/// Everything a representation may be asked to respect.
+struct RepresentationOptions {
+  iwls::Options iwls;
+  int threads = 1;  ///< >= 1
+};
+
+/// Names in the order users should see them; the first is the default.
+std::vector<std::string> representation_names();
+
+/// An empty representation with one patch per vertex. Throws std::invalid_argument for an unknown name.
+std::unique_ptr<Representation> make_representation(const std::string& name,
+                                                    const core::VertexNeighbours& neighbours,
+                                                    const RepresentationOptions& options);
+
+}  // namespace sheen::fitting

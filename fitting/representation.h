@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/samples/sample_batch.h"
+#include "fitting/light_field.h"
+
+namespace sheen::fitting {
+
+/// What changed in a light field since the last call: patch indices, ascending, no repeats.
+struct ModelUpdate {
+  std::vector<std::uint32_t> patches;
+};
+
+/// Work done so far.
+struct FitStatistics {
+  std::size_t samples = 0;        ///< samples absorbed
+  std::size_t fits = 0;           ///< least-squares systems solved
+  std::size_t patch_views = 0;    ///< (patch, view) pairs seen: the denominator of fits per patch per view
+};
+
+/// A light field under construction: takes the samples of one view after the other.
+/// The result does not depend on the number of threads.
+class Representation {
+ public:
+  virtual ~Representation() = default;
+
+  /// Absorbs one view. The returned reference is valid until the next call.
+  virtual const ModelUpdate& absorb(const core::SampleBatch& batch) = 0;
+
+  /// Solves what was put off and fills patches never seen from their neighbours. More views may
+  /// be absorbed afterwards; then call it again.
+  virtual const ModelUpdate& finish() = 0;
+
+  /// The model as of the last `absorb` or `finish`.
+  [[nodiscard]] virtual const LightField& light_field() const = 0;
+
+  [[nodiscard]] virtual FitStatistics statistics() const = 0;
+};
+
+}  // namespace sheen::fitting

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Geometry>
+#include <opencv2/core/mat.hpp>
+
+#include <memory>
+
+#include "core/geometry/camera.h"
+#include "core/mesh/mesh.h"
+#include "fitting/light_field.h"
+#include "fitting/representation.h"
+#include "render/context/context.h"
+
+namespace sheen::render {
+
+/// A picture of the light field as a camera sees it, lens distortion included.
+struct RenderedView {
+  cv::Mat image;    ///< CV_8UC3 BGR, black where nothing is
+  cv::Mat mask;     ///< CV_8UC1: 255 where the mesh is seen
+  cv::Mat support;  ///< CV_8UC1: 255 where a patch seen in the fit contributes
+};
+
+/// Draws one light field on its mesh. Light fields are drawn through the registry of patch shaders
+/// (render/surface/patch_shader.h), one per representation.
+class SurfaceRenderer {
+ public:
+  virtual ~SurfaceRenderer() = default;
+
+  /// Uploads what changed; `light_field` is the one the renderer was made with.
+  virtual void upload(const fitting::ModelUpdate& update) = 0;
+
+  virtual RenderedView render(const core::CameraModel& camera,
+                              const Eigen::Isometry3d& camera_from_object) = 0;
+};
+
+/// OpenGL: centres evaluated in the vertex stage, colour sum and weight sum interpolated apart and
+/// divided per fragment (eq. 7). Mesh and light field must outlive the renderer.
+std::unique_ptr<SurfaceRenderer> make_gl_surface_renderer(Context& context, const core::Mesh& mesh,
+                                                          const fitting::LightField& light_field);
+
+/// Reference without OpenGL: one ray per pixel, same interpolation. Exact at every pixel under any
+/// lens distortion; slow.
+std::unique_ptr<SurfaceRenderer> make_reference_surface_renderer(
+    const core::Mesh& mesh, const fitting::LightField& light_field, int threads);
+
+}  // namespace sheen::render
