@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#include "app/commands/command_context.h"
+
+#include <cstdio>
+#include <fstream>
+#include <thread>
+
+#include "core/diagnostics/error.h"
+#include "core/files/staged_output.h"
+
+namespace sheen::app {
+namespace {
+
+void write_report(const std::filesystem::path& path, const std::string& text) {
+  core::StagedOutput output(path);
+  std::ofstream file(output.path(), std::ios::binary);
+  file << text << '\n';
+  file.close();
+  if (!file) {
+    throw core::Error(core::Error::Kind::run_failed, path, "could not be written",
+                      "check free space and permissions");
+  }
+  output.commit();
+}
+
+}  // namespace
+
+void CommandContext::note(const std::string& line) const {
+  if (!quiet) std::fprintf(stderr, "%s\n", line.c_str());
+}
+
+void CommandContext::publish(const nlohmann::ordered_json& document, const std::string& text) const {
+  if (!report_path.empty()) write_report(report_path, document.dump(2));
+  const std::string& answer = json ? document.dump(2) : text;
+  std::fputs(answer.c_str(), stdout);
+  if (!answer.empty() && answer.back() != '\n') std::fputc('\n', stdout);
+}
+
+void add_common_options(CLI::App& command, CommandContext& context) {
+  context.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  command
+      .add_option("--threads", context.threads,
+                  "Worker threads; results do not depend on it (default: all cores)")
+      ->check(CLI::Range(1, 256))
+      ->type_name("N");
+  command.add_flag("--quiet", context.quiet, "No progress and no notes on stderr");
+  command.add_flag("--json", context.json, "Print one JSON document instead of text");
+  command
+      .add_option("--report", context.report_path, "Also write the JSON document to this file")
+      ->type_name("FILE");
+}
+
+}  // namespace sheen::app

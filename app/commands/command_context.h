@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "app/progress.h"
+
+namespace sheen::app {
+
+/// What every subcommand is told and how it answers (contract: results on stdout, the rest on stderr).
+struct CommandContext {
+  int threads = 1;
+  bool quiet = false;
+  bool json = false;
+  std::filesystem::path report_path;  ///< --report; empty: none
+
+  /// Bar on a terminal, plain lines otherwise, nothing with --quiet.
+  [[nodiscard]] Progress progress(std::string what, int total) const {
+    return {std::move(what), total, quiet};
+  }
+
+  /// One line on stderr, unless --quiet.
+  void note(const std::string& line) const;
+
+  /// Ends a command: `document` to --report and, with --json, to stdout; else `text` to stdout.
+  void publish(const nlohmann::ordered_json& document, const std::string& text) const;
+};
+
+/// --threads, --quiet, --json, --report: the same words for every subcommand.
+void add_common_options(CLI::App& command, CommandContext& context);
+
+}  // namespace sheen::app
