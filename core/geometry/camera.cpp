@@ -51,8 +51,10 @@ std::optional<Eigen::Vector2d> CameraModel::undistort(const Eigen::Vector2d& dis
     const Eigen::Vector2d residual = distort(ideal) - distorted;
     if (residual.squaredNorm() < tolerance * tolerance) break;
     Eigen::Matrix2d J;
-    J.col(0) = (distort(ideal + Eigen::Vector2d(h, 0)) - distort(ideal - Eigen::Vector2d(h, 0))) / (2 * h);
-    J.col(1) = (distort(ideal + Eigen::Vector2d(0, h)) - distort(ideal - Eigen::Vector2d(0, h))) / (2 * h);
+    J.col(0) =
+        (distort(ideal + Eigen::Vector2d(h, 0)) - distort(ideal - Eigen::Vector2d(h, 0))) / (2 * h);
+    J.col(1) =
+        (distort(ideal + Eigen::Vector2d(0, h)) - distort(ideal - Eigen::Vector2d(0, h))) / (2 * h);
     if (std::abs(J.determinant()) < 1e-9) return std::nullopt;
     ideal -= J.inverse() * residual;
     // Stay inside the branch of the polynomial that grows.

@@ -8,7 +8,8 @@ namespace sheen::core {
 /// Hemisphere <-> unit disc <-> square maps of docs/algorithm.md. A direction on the hemisphere is
 /// a unit vector with z >= 0 in the tangent frame.
 
-/// Orthographic: drop z. Inverse: z = sqrt(1 - u^2 - v^2), directions outside the disc are put on the rim.
+/// Orthographic: drop z. Inverse: z = sqrt(1 - u^2 - v^2), directions outside the disc are put on
+/// the rim.
 Eigen::Vector2f disc_from_hemisphere(const Eigen::Vector3f& direction);
 Eigen::Vector3f hemisphere_from_disc(const Eigen::Vector2f& uv);
 

@@ -16,7 +16,8 @@ struct TangentFrame {
 };
 
 /// The one frame that every part of the program derives from a unit normal: no seam except where
-/// n.z changes sign, no normalisation. Duff et al., "Building an Orthonormal Basis, Revisited" (2017).
+/// n.z changes sign, no normalisation. Duff et al., "Building an Orthonormal Basis, Revisited"
+/// (2017).
 inline TangentFrame tangent_frame(const Eigen::Vector3f& n) {
   const float sign = std::copysign(1.0f, n.z());
   const float a = -1.0f / (sign + n.z());

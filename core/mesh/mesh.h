@@ -14,7 +14,8 @@ namespace sheen::core {
 struct Mesh {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
-  std::vector<Eigen::Matrix<std::uint32_t, 3, 1>> triangles;  ///< counter-clockwise seen from outside
+  std::vector<Eigen::Matrix<std::uint32_t, 3, 1>>
+      triangles;  ///< counter-clockwise seen from outside
 };
 
 }  // namespace sheen::core

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/mesh/mesh.h"
+
 #include <cstdint>
 #include <span>
 #include <vector>
-
-#include "core/mesh/mesh.h"
 
 namespace sheen::core {
 
@@ -15,7 +15,9 @@ struct VertexNeighbours {
   std::vector<std::uint32_t> offsets;
   std::vector<std::uint32_t> indices;
 
-  [[nodiscard]] std::size_t vertex_count() const { return offsets.empty() ? 0 : offsets.size() - 1; }
+  [[nodiscard]] std::size_t vertex_count() const {
+    return offsets.empty() ? 0 : offsets.size() - 1;
+  }
   [[nodiscard]] std::span<const std::uint32_t> of(std::size_t vertex_idx) const {
     return {indices.data() + offsets[vertex_idx], offsets[vertex_idx + 1] - offsets[vertex_idx]};
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <filesystem>
-
 #include "core/mesh/mesh.h"
+
+#include <filesystem>
 
 namespace sheen::core {
 

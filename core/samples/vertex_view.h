@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/geometry/camera.h"
+#include "core/geometry/tangent_frame.h"
+#include "core/mesh/mesh.h"
+
 #include <Eigen/Geometry>
 
 #include <array>
 #include <cstdint>
 #include <string_view>
 #include <vector>
-
-#include "core/geometry/camera.h"
-#include "core/geometry/tangent_frame.h"
-#include "core/mesh/mesh.h"
 
 namespace sheen::core {
 
@@ -21,8 +21,9 @@ std::string_view name_of(VertexRejection rejection);
 
 /// Which vertices may become samples.
 struct SamplingLimits {
-  float min_cosine = 0.2f;       ///< grazing cut-off: smallest cosine between normal and view, [0, 1)
-  float border_margin_px = 2.0f; ///< samples nearer to the picture's border are refused, >= 1
+  float min_cosine = 0.2f;  ///< grazing cut-off: smallest cosine between normal and view, [0, 1)
+  float border_margin_px = 2.0f;  ///< samples nearer to the picture's border are refused, >= 1;
+                                  ///< counted from the centres of the outermost pixels
 };
 
 /// All vertices of a mesh seen by one camera. Structure of arrays, one entry per vertex; entries
@@ -34,14 +35,18 @@ struct VertexView {
   std::vector<VertexRejection> rejection;
 };
 
-/// Frames of all vertices of a mesh, in order.
+/// Frames of all vertices of a mesh, in order. A vertex that no triangle uses is not part of the
+/// surface: its three vectors are zero, so every view direction has cosine 0 there and it never
+/// gives a sample.
 std::vector<TangentFrame> tangent_frames(const Mesh& mesh);
 
 /// Position of the camera in the object frame.
 Eigen::Vector3f eye_in_object(const Eigen::Isometry3d& camera_from_object);
 
-/// Projects every vertex and applies the limits that need no other vertex (all but `occluded`).
-/// Reuses the storage of `view`. Independent of the number of threads.
+/// Projects every vertex and applies the limits that need no other vertex (all but `occluded`). The
+/// first that fails is noted: behind the camera, beyond the lens model or outside the picture less
+/// its margin (outside_image), cosine <= 0 (back_facing), cosine < min_cosine (grazing). Reuses the
+/// storage of `view`. Independent of the number of threads.
 void project_vertices(const Mesh& mesh, const std::vector<TangentFrame>& frames,
                       const CameraModel& camera, const Eigen::Isometry3d& camera_from_object,
                       const SamplingLimits& limits, int threads, VertexView& view);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <Eigen/Geometry>
-
 #include "core/geometry/camera.h"
 #include "core/samples/vertex_view.h"
+
+#include <Eigen/Geometry>
 
 namespace sheen::core {
 
