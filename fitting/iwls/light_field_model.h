@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "fitting/iwls/options.h"
+#include "fitting/light_field.h"
+
+#include <Eigen/Core>
+
+#include <span>
+#include <vector>
+
+namespace sheen::fitting::iwls {
+
+/// Geometry shared by all patches of an IWLS model.
+struct ModelShape {
+  Layout layout = Layout::grid;
+  std::vector<Eigen::Vector2f> centers;  ///< on or near the unit disc
+  int terms = 3;                         ///< stored terms per centre: 1, 3 or 6
+  float support_radius = 0;              ///< of every centre, in units of the disc
+};
+
+/// The light field of incremental weighted least squares: per patch one low-degree polynomial at
+/// each centre, joined by a partition of unity (eqs. 6, 7). With d = (uv - centre) / support_radius
+/// the terms are 1, d.u, d.v, d.u^2, d.u d.v, d.v^2.
+class LightFieldModel final : public LightField {
+ public:
+  /// Mid grey everywhere, nothing observed.
+  LightFieldModel(ModelShape shape, std::size_t patch_count);
+
+  /// `coefficients` as `coefficients()` returns them, all finite; one flag per patch.
+  LightFieldModel(ModelShape shape, std::vector<Eigen::half> coefficients,
+                  std::vector<std::uint8_t> observed);
+
+  [[nodiscard]] std::string_view representation() const override { return "iwls"; }
+  [[nodiscard]] std::size_t patch_count() const override { return observed_.size(); }
+  [[nodiscard]] WeightedColour evaluate(std::size_t patch_idx,
+                                        const Eigen::Vector2f& uv) const override;
+  /// Mean of the constant terms of the centres inside the disc.
+  [[nodiscard]] Eigen::Vector3f mean_colour(std::size_t patch_idx) const override;
+  [[nodiscard]] const std::vector<std::uint8_t>& observed() const override { return observed_; }
+  [[nodiscard]] std::size_t coefficient_count() const override { return coefficients_.size(); }
+
+  [[nodiscard]] const ModelShape& shape() const { return shape_; }
+
+  /// All coefficients: [patch][centre][term][r, g, b], no padding.
+  [[nodiscard]] std::span<const Eigen::half> coefficients() const { return coefficients_; }
+  [[nodiscard]] std::span<const Eigen::half> coefficients(std::size_t patch_idx) const {
+    return coefficients().subspan(patch_idx * per_patch_, per_patch_);
+  }
+  [[nodiscard]] std::size_t coefficients_per_patch() const { return per_patch_; }
+
+  /// Stores one centre's polynomial ([term][r, g, b], `3 * terms` values), limited to what a half
+  /// can hold. Returns whether a stored number changed. Patches may be written by different
+  /// threads.
+  bool store(std::size_t patch_idx, std::size_t center_idx, std::span<const double> values);
+  /// Same for a constant at every centre.
+  bool store_constant(std::size_t patch_idx, const Eigen::Vector3f& colour);
+  /// Returns whether the flag changed.
+  bool store_observed(std::size_t patch_idx, bool observed);
+
+ private:
+  ModelShape shape_;
+  std::size_t per_patch_;
+  std::vector<Eigen::half> coefficients_;
+  std::vector<std::uint8_t> observed_;
+};
+
+}  // namespace sheen::fitting::iwls
