@@ -7,10 +7,15 @@
 
 namespace sheen::core {
 
-/// Reads PLY, OBJ or GLB. Vertices keep the order of the file; vertices no triangle uses are kept,
-/// so that patch indices mean vertex indices. OBJ corners that share a position and a normal become
-/// one vertex. Missing normals are computed, weighted by angle; degenerate triangles are dropped.
-/// Throws Error (bad_input) for unreadable files, no triangles, NaN or infinite positions.
+/// Reads PLY, OBJ, GLB or glTF; transforms of nodes are applied, several meshes become one.
+/// Polygons are cut into triangles, degenerate triangles are dropped. PLY and glTF: vertices keep
+/// number and order of the file, also those that no triangle uses and those that share a position
+/// (hard edges), so that patch indices mean vertex indices. OBJ: corners that share a position and
+/// a normal become one vertex, in order of first use; texture coordinates, groups and materials do
+/// not split vertices. Missing, zero or unusable normals are computed, weighted by angle; vertices
+/// that no triangle uses get (0, 0, 1) then. A closed surface wound inside out (negative volume) is
+/// turned, with its normals. Throws Error (bad_input) for unreadable files, no triangles, NaN or
+/// infinite positions.
 Mesh read_mesh(const std::filesystem::path& path);
 
 /// Writes a binary little-endian PLY with normals, beside the final name and then moved into place.
