@@ -5,7 +5,7 @@ find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs calib3d videoio a
 find_package(embree 3 REQUIRED)
 find_package(apriltag REQUIRED)
 find_package(CLI11 REQUIRED)
-find_package(spdlog REQUIRED)
+find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(TinyGLTF REQUIRED)
 find_package(PkgConfig REQUIRED)

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "app/commands/command_context.h"
+
+namespace sheen::app {
+
+/// `sheen evaluate MODEL.glb SESSION`: renders every posed view and compares with its picture.
+void add_evaluate_command(CLI::App& program, CommandContext& context);
+
+}  // namespace sheen::app

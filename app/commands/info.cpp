@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include "app/commands/info.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "app/pipeline/session_parts.h"
+#include "fitting/model_file/model_file.h"
+
+namespace sheen::app {
+namespace {
+
+nlohmann::ordered_json describe(const core::Mesh& mesh) {
+  Eigen::AlignedBox3f bounds;
+  for (const auto& position : mesh.positions) bounds.extend(position);
+  const Eigen::Vector3f size_mm = bounds.sizes() * 1000;
+  return {{"vertices", mesh.positions.size()},
+          {"triangles", mesh.triangles.size()},
+          {"size_mm", {size_mm.x(), size_mm.y(), size_mm.z()}}};
+}
+
+nlohmann::ordered_json describe_session(const std::filesystem::path& folder) {
+  const capture::Session session = capture::open_session(folder);
+  const auto frames = capture::open_frames(session);
+  const auto& camera = session.camera.intrinsics();
+  nlohmann::ordered_json document{{"kind", "session"}};
+  document["frames"] = frames->frame_count() ? nlohmann::ordered_json(*frames->frame_count())
+                                             : nlohmann::ordered_json(nullptr);
+  document["pictures"] = session.video ? session.video->filename().string()
+                                       : session.image_pattern.value_or("");
+  document["size_px"] = {camera.width_px, camera.height_px};
+  document["focal_px"] = {camera.focal_px.x(), camera.focal_px.y()};
+  if (session.board) {
+    const capture::Board board = capture::read_board(*session.board);
+    document["board"] = {{"family", board.family}, {"tags", board.tags.size()}};
+  }
+  if (session.poses) document["poses"] = capture::read_trajectory(*session.poses).entries().size();
+  document["mesh"] = describe(read_session_mesh(session));
+  document["warnings"] = session.warnings;
+  return document;
+}
+
+nlohmann::ordered_json describe_model(const std::filesystem::path& path) {
+  const fitting::Model model = fitting::read_model(path);
+  const fitting::LightField& light_field = *model.light_field;
+  const auto& observed = light_field.observed();
+  const std::size_t patches = light_field.patch_count();
+  return {{"kind", "model"},
+          {"representation", light_field.representation()},
+          {"patches", patches},
+          {"patches_observed", std::count(observed.begin(), observed.end(), std::uint8_t{1})},
+          {"coefficients", light_field.coefficient_count()},
+          {"coefficients_per_patch", static_cast<double>(light_field.coefficient_count()) /
+                                         static_cast<double>(std::max<std::size_t>(1, patches))},
+          {"bytes", std::filesystem::file_size(path)},
+          {"mesh", describe(model.mesh)}};
+}
+
+/// One "name  value" line per entry; nested entries on one line.
+std::string to_text(const nlohmann::ordered_json& document) {
+  std::string text;
+  for (const auto& [name, value] : document.items()) {
+    const std::string shown = value.is_string() ? value.get<std::string>() : value.dump();
+    text += fmt::format("{:<24}{}\n", name, shown);
+  }
+  return text;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& program, CommandContext& context) {
+  auto path = std::make_shared<std::filesystem::path>();
+  CLI::App* command = program.add_subcommand("info", "Tell what a session or a model holds");
+  command->add_option("path", *path, "Session folder or model file")->required();
+  add_common_options(*command, context);
+  command->callback([path, &context] {
+    const nlohmann::ordered_json document = std::filesystem::is_directory(*path)
+                                                ? describe_session(*path)
+                                                : describe_model(*path);
+    context.publish(document, to_text(document));
+  });
+}
+
+}  // namespace sheen::app

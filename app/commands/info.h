@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "app/commands/command_context.h"
+
+namespace sheen::app {
+
+/// `sheen info PATH`: what a session or a model holds.
+void add_info_command(CLI::App& program, CommandContext& context);
+
+}  // namespace sheen::app

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "app/commands/command_context.h"
+
+namespace sheen::app {
+
+/// `sheen render MODEL.glb --views SESSION -o DIR`: pictures from every view of a session.
+void add_render_command(CLI::App& program, CommandContext& context);
+
+}  // namespace sheen::app

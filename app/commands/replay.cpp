@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+#include "app/commands/replay.h"
+
+#include <fmt/format.h>
+
+#include "app/commands/replay_options.h"
+#include "app/evaluation/evaluate_views.h"
+#include "app/pipeline/pipeline.h"
+#include "app/pipeline/replay_report.h"
+#include "capture/pose/trajectory.h"
+#include "core/diagnostics/error.h"
+#include "core/mesh/neighbours.h"
+#include "core/visibility/ray_visibility.h"
+#include "fitting/model_file/model_file.h"
+#include "fitting/registry.h"
+#include "render/visibility/depth_visibility.h"
+
+namespace sheen::app {
+namespace {
+
+/// The two light fields every replay builds from the same samples.
+struct LightFields {
+  std::unique_ptr<fitting::Representation> fitted;
+  std::unique_ptr<fitting::Representation> mean;  ///< null when `fitted` is the mean itself
+
+  LightFields(const ReplayOptions& options, const core::Mesh& mesh, int threads) {
+    const auto neighbours = core::vertex_neighbours(mesh);
+    const fitting::RepresentationOptions fit_options{options.iwls, threads};
+    fitted = fitting::make_representation(options.representation, neighbours, fit_options);
+    if (options.representation != "mean") {
+      mean = fitting::make_representation("mean", neighbours, fit_options);
+    }
+  }
+
+  [[nodiscard]] const fitting::LightField& mean_colours() const {
+    return mean ? mean->light_field() : fitted->light_field();
+  }
+
+  void finish() {
+    fitted->finish();
+    if (mean) mean->finish();
+  }
+};
+
+void run_producer(Producer& producer, std::optional<int> frame_count,
+                  const CommandContext& context) {
+  Progress progress = context.progress("fitting", frame_count.value_or(0));
+  run_pipeline(producer, context.threads > 1, [&](const FrameReport& report) {
+    progress.show(report.frames_read, fmt::format("{} posed", report.frames_posed));
+  });
+}
+
+/// A model of nothing helps nobody: say why nothing was seen.
+void check_something_was_seen(const capture::Session& session, const ProducerStatistics& frames,
+                              std::size_t samples) {
+  if (frames.posed.empty()) {
+    std::string reasons;
+    for (const auto& [reason, count] : frames.pose_rejections) {
+      reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
+    }
+    throw core::bad_input(session.folder,
+                          fmt::format("none of {} frames got a pose ({})", frames.frames_read, reasons),
+                          "check that board.yaml describes the printed board and that the stage is "
+                          "in view and sharp");
+  }
+  if (samples == 0) {
+    throw core::bad_input(session.mesh, "is not seen in any posed frame",
+                          "check T_stage_object and that mesh and board are in metres");
+  }
+}
+
+void write_poses(const std::filesystem::path& path, const std::vector<PosedFrame>& posed) {
+  std::vector<capture::Trajectory::Entry> entries;
+  entries.reserve(posed.size());
+  for (const PosedFrame& frame : posed) {
+    entries.push_back({static_cast<double>(frame.index), frame.camera_from_stage.inverse()});
+  }
+  capture::write_trajectory(path, entries);
+}
+
+std::vector<EvaluationSummary> evaluate_held_out(const capture::Session& session,
+                                                 const core::Mesh& mesh,
+                                                 const LightFields& fields,
+                                                 const std::vector<PosedFrame>& held_out,
+                                                 const CommandContext& context) {
+  const auto gl = render::make_osmesa_context();
+  const auto fitted =
+      render::make_gl_surface_renderer(*gl, mesh, fields.fitted->light_field());
+  const auto mean = render::make_gl_surface_renderer(*gl, mesh, fields.mean_colours());
+  render::SurfaceRenderer* const renderers[] = {fitted.get(), mean.get()};
+  Progress progress = context.progress("evaluating", static_cast<int>(held_out.size()));
+  int done = 0;
+  return evaluate_views(session, held_out, renderers,
+                        [&](const ComparedView&) { progress.show(++done); });
+}
+
+void run_replay(const ReplayOptions& options, const CommandContext& context) {
+  // Open everything that may be wrong before the long work.
+  const capture::Session session = capture::open_session(options.session.folder);
+  for (const std::string& warning : session.warnings) context.note("note: " + warning);
+  const core::Mesh mesh = read_session_mesh(session);
+  auto frames = capture::open_frames(session, options.session.start, options.session.end);
+  const std::optional<int> frame_count = frames->frame_count();
+  std::unique_ptr<render::Context> gl;
+  std::unique_ptr<core::Visibility> visibility;
+  if (options.visibility == VisibilityMethod::depth) {
+    gl = render::make_osmesa_context();
+    visibility = render::make_depth_visibility(*gl, mesh);
+  } else {
+    visibility = core::make_ray_visibility(mesh, context.threads);
+  }
+
+  // Fit frame by frame.
+  LightFields fields(options, mesh, context.threads);
+  Producer producer({.frames = std::move(frames),
+                     .poses = make_pose_estimator(session, options.session.pose_source,
+                                                  options.session.gate),
+                     .visibility = std::move(visibility),
+                     .mesh = mesh,
+                     .camera = session.camera,
+                     .stage_from_object = session.stage_from_object,
+                     .limits = options.limits,
+                     .representation = *fields.fitted,
+                     .baseline = fields.mean.get(),
+                     .hold_out = {options.session.hold_out},
+                     .threads = context.threads});
+  run_producer(producer, frame_count, context);
+  const ProducerStatistics& statistics = producer.statistics();
+  check_something_was_seen(session, statistics, fields.fitted->statistics().samples);
+  fields.finish();
+
+  // Save.
+  const fitting::LightField& light_field = fields.fitted->light_field();
+  fitting::write_model(options.output, mesh, light_field);
+  if (!options.mean_output.empty()) {
+    fitting::write_model(options.mean_output, mesh, fields.mean_colours());
+  }
+  if (!options.poses_output.empty()) write_poses(options.poses_output, statistics.posed);
+
+  // Measure and report.
+  const auto& observed = light_field.observed();
+  ReplayReport report{
+      .frames = statistics,
+      .timer = producer.timer(),
+      .fit = fields.fitted->statistics(),
+      .representation = options.representation,
+      .patches = light_field.patch_count(),
+      .patches_observed =
+          static_cast<std::size_t>(std::count(observed.begin(), observed.end(), std::uint8_t{1})),
+      .coefficients = light_field.coefficient_count(),
+      .model_bytes = std::filesystem::file_size(options.output),
+      .held_out = {},
+      .held_out_mean = {},
+      .options = to_json(options)};
+  if (!statistics.held_out.empty()) {
+    auto summaries = evaluate_held_out(session, mesh, fields, statistics.held_out, context);
+    report.held_out = std::move(summaries[0]);
+    report.held_out_mean = std::move(summaries[1]);
+  }
+  context.publish(to_json(report), to_text(report) + "written  " + options.output.string() + "\n");
+}
+
+}  // namespace
+
+void add_replay_command(CLI::App& program, CommandContext& context) {
+  auto options = std::make_shared<ReplayOptions>();
+  CLI::App* command = program.add_subcommand(
+      "replay", "Turn a recorded session into a light field");
+  command->footer(
+      "Example: fit a session, keep every fifth frame out and report the error on those:\n"
+      "  sheen replay sample_data/glossy -o model.glb --hold-out 5");
+  add_replay_options(*command, *options);
+  add_common_options(*command, context);
+  command->callback([options, &context] { run_replay(*options, context); });
+}
+
+}  // namespace sheen::app

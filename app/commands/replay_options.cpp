@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include "app/commands/replay_options.h"
+
+#include <map>
+
+#include "fitting/registry.h"
+
+namespace sheen::app {
+namespace {
+
+namespace iwls = fitting::iwls;
+
+const std::map<std::string, iwls::Construction> kFitters{
+    {"quadtree", iwls::Construction::quadtree},
+    {"adaptive", iwls::Construction::adaptive},
+    {"batch", iwls::Construction::batch}};
+const std::map<std::string, iwls::Layout> kLayouts{{"grid", iwls::Layout::grid},
+                                                   {"jittered-grid", iwls::Layout::jittered_grid},
+                                                   {"disk", iwls::Layout::disk},
+                                                   {"jittered-disk", iwls::Layout::jittered_disk}};
+const std::map<std::string, int> kTerms{{"1", 1}, {"3", 3}, {"6", 6}, {"auto", 0}};
+const std::map<std::string, VisibilityMethod> kVisibilities{{"rays", VisibilityMethod::rays},
+                                                            {"depth", VisibilityMethod::depth}};
+
+template <typename Value>
+std::string name_in(const std::map<std::string, Value>& names, Value value) {
+  for (const auto& [name, candidate] : names) {
+    if (candidate == value) return name;
+  }
+  return {};
+}
+
+/// An option that takes one of a few words; the words and the default end up in the help.
+template <typename Value>
+void add_choice(CLI::App& command, const std::string& flag, Value& value,
+                const std::map<std::string, Value>& names, const std::string& text) {
+  std::string words;
+  for (const auto& [name, unused] : names) words += (words.empty() ? "" : "|") + name;
+  command.add_option(flag, value, text + " (default " + name_in(names, value) + ")")
+      ->transform(CLI::CheckedTransformer(names, CLI::ignore_case).description(""))
+      ->type_name(words);
+}
+
+}  // namespace
+
+void add_replay_options(CLI::App& command, ReplayOptions& options) {
+  options.representation = fitting::representation_names().front();
+  command.add_option("session", options.session.folder, "Session folder")->required();
+  command.add_option("-o,--output", options.output, "Model to write (.glb)")
+      ->required()
+      ->type_name("MODEL.glb");
+  command
+      .add_option("--representation", options.representation, "How patches are modelled")
+      ->check(CLI::IsMember(fitting::representation_names()))
+      ->capture_default_str();
+  add_choice(command, "--fitter", options.iwls.construction, kFitters,
+             "How centres are fitted while samples arrive");
+  add_choice(command, "--layout", options.iwls.layout, kLayouts,
+             "Where centres lie on the disc of directions");
+  command.add_option("--centers", options.iwls.centers, "Centres per patch")
+      ->check(CLI::IsMember({16, 64}))
+      ->capture_default_str();
+  add_choice(command, "--terms", options.iwls.terms, kTerms, "Polynomial terms per centre");
+  command.add_flag("--faithful", options.iwls.faithful,
+                   "Exactly the paper's rules: 3 terms, no ridge");
+  command.add_option("--patches", options.patches, "What a patch is")
+      ->check(CLI::IsMember({"vertex"}))
+      ->capture_default_str();
+  command
+      .add_option("--hold-out", options.session.hold_out,
+                  "Keep every N-th frame out of the fit and report the error on them; 0: none")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  add_session_options(command, options.session);
+  add_choice(command, "--visibility", options.visibility, kVisibilities,
+             "How hidden vertices are found");
+  command
+      .add_option("--min-cosine", options.limits.min_cosine,
+                  "Refuse samples seen at a smaller cosine to the normal")
+      ->check(CLI::Range(0.0, 0.99))
+      ->capture_default_str();
+  command.add_option("--mean-out", options.mean_output,
+                     "Also save the mean colours, what a textured mesh would show")
+      ->type_name("FILE");
+  command.add_option("--poses-out", options.poses_output, "Also save the poses, TUM form")
+      ->type_name("FILE");
+}
+
+nlohmann::ordered_json to_json(const ReplayOptions& options) {
+  return {{"session", options.session.folder.string()},
+          {"representation", options.representation},
+          {"fitter", name_in(kFitters, options.iwls.construction)},
+          {"layout", name_in(kLayouts, options.iwls.layout)},
+          {"centers", options.iwls.centers},
+          {"terms", name_in(kTerms, options.iwls.terms)},
+          {"faithful", options.iwls.faithful},
+          {"patches", options.patches},
+          {"visibility", name_in(kVisibilities, options.visibility)},
+          {"hold_out", options.session.hold_out},
+          {"start", options.session.start},
+          {"min_cosine", options.limits.min_cosine}};
+}
+
+}  // namespace sheen::app

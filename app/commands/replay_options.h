@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "app/commands/session_options.h"
+#include "core/samples/vertex_view.h"
+#include "fitting/iwls/options.h"
+
+namespace sheen::app {
+
+/// Which of the agreeing implementations finds hidden vertices.
+enum class VisibilityMethod { rays, depth };
+
+/// Everything `sheen replay` may be asked.
+struct ReplayOptions {
+  SessionOptions session;
+  std::filesystem::path output;        ///< the model
+  std::filesystem::path mean_output;   ///< the mean colours as a model; empty: not written
+  std::filesystem::path poses_output;  ///< estimated poses, TUM form; empty: not written
+  std::string representation;
+  std::string patches = "vertex";
+  fitting::iwls::Options iwls;
+  VisibilityMethod visibility = VisibilityMethod::rays;
+  core::SamplingLimits limits;
+};
+
+void add_replay_options(CLI::App& command, ReplayOptions& options);
+
+/// The options as they stand in reports.
+nlohmann::ordered_json to_json(const ReplayOptions& options);
+
+}  // namespace sheen::app

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "app/evaluation/view_evaluation.h"
+#include "app/pipeline/producer.h"
+#include "capture/session/session.h"
+#include "render/surface/surface_renderer.h"
+
+namespace sheen::app {
+
+/// A view as photographed and as every renderer draws it.
+struct ComparedView {
+  const capture::Frame& photograph;
+  std::span<const render::RenderedView> rendered;
+  std::span<const ViewError> errors;
+};
+
+/// Renders every view (ascending by index) with each renderer and compares with the session's
+/// pictures; views on which the mesh cannot be seen are left out. One summary per renderer.
+std::vector<EvaluationSummary> evaluate_views(
+    const capture::Session& session, const std::vector<PosedFrame>& views,
+    std::span<render::SurfaceRenderer* const> renderers,
+    const std::function<void(const ComparedView&)>& on_view);
+
+}  // namespace sheen::app

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include <cstdio>
+#include <exception>
+
+#include "app/commands/evaluate.h"
+#include "app/commands/info.h"
+#include "app/commands/render.h"
+#include "app/commands/replay.h"
+#include "app/commands/synth.h"
+#include "app/interrupt.h"
+#include "core/diagnostics/error.h"
+
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kRunFailed = 1;
+constexpr int kBadInput = 2;
+constexpr int kInterrupted = 130;  // 128 + SIGINT, as shells expect
+
+/// CLI11's message is one line already; say where help is on the same line.
+int report_parse_error(const CLI::App& program, const CLI::ParseError& error) {
+  if (error.get_exit_code() == kDone) return program.exit(error);  // --help, --version
+  std::fprintf(stderr, "sheen: %s; see sheen --help or sheen COMMAND --help\n", error.what());
+  return kBadInput;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace sheen;
+  CLI::App program(
+      "Sheen captures how an object looks from every direction: a recording of a walk round it\n"
+      "becomes a surface light field that can be drawn from anywhere.");
+  program.set_version_flag("--version", "sheen " SHEEN_VERSION);
+  program.require_subcommand(1);
+  program.footer(
+      "Start with the recording that comes with the source:\n"
+      "  sheen replay sample_data/glossy -o model.glb --hold-out 5\n"
+      "  sheen evaluate model.glb sample_data/glossy/held_out\n"
+      "Exit codes: 0 done, 1 failed while running, 2 bad arguments or bad input.");
+  app::CommandContext context;
+  app::add_replay_command(program, context);
+  app::add_render_command(program, context);
+  app::add_evaluate_command(program, context);
+  app::add_synth_command(program, context);
+  app::add_info_command(program, context);
+
+  app::watch_for_interrupts();
+  try {
+    program.parse(argc, argv);
+    return kDone;
+  } catch (const CLI::ParseError& error) {
+    return report_parse_error(program, error);
+  } catch (const core::Error& error) {
+    std::fprintf(stderr, "sheen: %s\n", error.what());
+    return error.kind() == core::Error::Kind::bad_input ? kBadInput : kRunFailed;
+  } catch (const app::Interrupted& interruption) {
+    std::fprintf(stderr, "sheen: %s\n", interruption.what());
+    return kInterrupted;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "sheen: %s\n", error.what());
+    return kRunFailed;
+  }
+}

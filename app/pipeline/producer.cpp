@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: MIT
+#include "app/pipeline/producer.h"
+
+#include "core/samples/back_projection.h"
+
+namespace sheen::app {
+
+Producer::Producer(Parts parts)
+    : parts_(std::move(parts)), tangent_frames_(core::tangent_frames(parts_.mesh)) {}
+
+std::optional<FrameReport> Producer::step() {
+  // Close the books of this frame whatever happens to it.
+  const auto frame_timing = timer_.measure_frame();
+
+  // Read the next picture.
+  std::optional<capture::Frame> frame;
+  {
+    const auto timing = timer_.measure("decode");
+    frame = parts_.frames->next();
+  }
+  if (!frame) return std::nullopt;
+  ++statistics_.frames_read;
+
+  // Find the camera; fit the frame unless it is held out.
+  FrameReport report;
+  if (const auto pose = pose_of(*frame)) {
+    const PosedFrame posed{frame->index, frame->time_s, pose->camera_from_stage};
+    statistics_.posed.push_back(posed);
+    if (parts_.hold_out.contains(frame->index)) {
+      statistics_.held_out.push_back(posed);
+    } else {
+      observe(*frame, pose->camera_from_stage);
+      const auto timing = timer_.measure("fit");
+      report.update = parts_.representation.absorb(batch_);
+      ++statistics_.frames_fitted;
+    }
+  }
+  report.frames_read = statistics_.frames_read;
+  report.frames_posed = static_cast<int>(statistics_.posed.size());
+  return report;
+}
+
+std::optional<capture::FramePose> Producer::pose_of(const capture::Frame& frame) {
+  const auto timing = timer_.measure("pose");
+  const capture::PoseResult result = parts_.poses->estimate(frame);
+  if (const auto* rejection = std::get_if<capture::PoseRejection>(&result)) {
+    ++statistics_.pose_rejections[std::string(name_of(*rejection))];
+    return std::nullopt;
+  }
+  const auto& pose = std::get<capture::FramePose>(result);
+  if (pose.tags > 0) statistics_.reprojection_px.push_back(pose.reprojection_px);
+  return pose;
+}
+
+void Producer::observe(const capture::Frame& frame, const Eigen::Isometry3d& camera_from_stage) {
+  const Eigen::Isometry3d camera_from_object = camera_from_stage * parts_.stage_from_object;
+  {
+    const auto timing = timer_.measure("visibility");
+    core::project_vertices(parts_.mesh, tangent_frames_, parts_.camera, camera_from_object,
+                           parts_.limits, parts_.threads, view_);
+    parts_.visibility->reject_occluded(parts_.camera, camera_from_object, view_);
+  }
+  {
+    const auto timing = timer_.measure("sample");
+    core::back_project(frame.image, view_, batch_);
+  }
+  const auto counts = core::count_rejections(view_);
+  for (std::size_t i = 0; i < counts.size(); ++i) statistics_.vertex_rejections[i] += counts[i];
+  if (parts_.baseline != nullptr) {
+    const auto timing = timer_.measure("baseline");
+    parts_.baseline->absorb(batch_);
+  }
+}
+
+}  // namespace sheen::app

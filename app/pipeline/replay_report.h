@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "app/evaluation/view_evaluation.h"
+#include "app/pipeline/producer.h"
+
+namespace sheen::app {
+
+/// Everything a replay has to say at its end.
+struct ReplayReport {
+  const ProducerStatistics& frames;
+  const core::StageTimer& timer;
+  fitting::FitStatistics fit;
+  std::string representation;
+  std::size_t patches = 0;
+  std::size_t patches_observed = 0;
+  std::size_t coefficients = 0;
+  std::size_t model_bytes = 0;
+  std::optional<EvaluationSummary> held_out;       ///< of the fitted representation
+  std::optional<EvaluationSummary> held_out_mean;  ///< of the mean colours, on the same views
+  nlohmann::ordered_json options;
+};
+
+/// The document of contract section 5; `mean_colour` holds the baseline's held-out figures.
+nlohmann::ordered_json to_json(const ReplayReport& report);
+
+/// The same for people: a short table.
+std::string to_text(const ReplayReport& report);
+
+}  // namespace sheen::app

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+#include "app/pipeline/session_parts.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+
+#include "core/diagnostics/error.h"
+#include "core/mesh/read_mesh.h"
+
+namespace sheen::app {
+namespace {
+
+constexpr double kFallbackFps = 30;
+constexpr float kLargestObject_m = 20.0f;
+constexpr float kSmallestObject_m = 0.001f;
+
+}  // namespace
+
+std::unique_ptr<capture::PoseEstimator> make_pose_estimator(const capture::Session& session,
+                                                            PoseSource source,
+                                                            const capture::PoseGate& gate) {
+  const auto session_file = session.folder / "session.json";
+  const bool from_file =
+      source == PoseSource::file || (source == PoseSource::automatic && session.poses);
+  if (from_file) {
+    if (!session.poses) {
+      throw core::bad_input(session_file, "has no poses",
+                            "name a poses.txt under \"poses\" or take the poses from the tags");
+    }
+    return capture::make_recorded_pose_estimator(capture::read_trajectory(*session.poses),
+                                                 session.fps.value_or(kFallbackFps));
+  }
+  if (!session.board) {
+    throw core::bad_input(session_file, "has no board",
+                          "name a board.yaml under \"board\" or take the poses from a file");
+  }
+  return capture::make_tag_pose_estimator(capture::read_board(*session.board), session.camera,
+                                          gate);
+}
+
+core::Mesh read_session_mesh(const capture::Session& session) {
+  core::Mesh mesh = core::read_mesh(session.mesh);
+  Eigen::AlignedBox3f bounds;
+  for (const auto& position : mesh.positions) bounds.extend(position);
+  const float size_m = bounds.diagonal().norm();
+  if (size_m > kLargestObject_m || size_m < kSmallestObject_m) {
+    throw core::bad_input(
+        session.mesh, fmt::format("is {:.4g} m across, its unit must be the metre", size_m),
+        size_m > kLargestObject_m ? "scale it, by 0.001 if it is in millimetres"
+                                  : "scale it to its true size");
+  }
+  return mesh;
+}
+
+}  // namespace sheen::app

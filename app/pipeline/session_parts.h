@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+
+#include "capture/pose/pose_estimator.h"
+#include "capture/session/session.h"
+#include "core/mesh/mesh.h"
+
+namespace sheen::app {
+
+/// Where poses come from: `automatic` takes poses.txt when the session has one, else the tags.
+enum class PoseSource { automatic, tags, file };
+
+/// Throws core::Error (bad_input) when the session lacks what `source` asks for.
+std::unique_ptr<capture::PoseEstimator> make_pose_estimator(const capture::Session& session,
+                                                            PoseSource source,
+                                                            const capture::PoseGate& gate);
+
+/// The session's mesh, checked to be of a size that a handheld camera can walk round: throws
+/// core::Error (bad_input) for meshes in millimetres and the like.
+core::Mesh read_session_mesh(const capture::Session& session);
+
+}  // namespace sheen::app
