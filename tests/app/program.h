@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace sheen::tests {
+
+/// What a run of the program left behind.
+struct ProgramRun {
+  int exit_code = -1;
+  std::string standard_output;
+  std::string standard_error;
+
+  [[nodiscard]] nlohmann::json json() const { return nlohmann::json::parse(standard_output); }
+};
+
+/// Runs the built `sheen` with these arguments, without a shell, and waits for its end.
+ProgramRun run_sheen(const std::vector<std::string>& arguments);
+
+/// A folder for one test that goes away with it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  TemporaryFolder(TemporaryFolder&&) = delete;
+  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+std::string read_file(const std::filesystem::path& path);
+void write_file(const std::filesystem::path& path, const std::string& bytes);
+
+/// The recorded session that comes with the source.
+std::filesystem::path sample_session();
+
+/// A real recording that is not part of the repository; empty when it is absent.
+std::filesystem::path shared_session(const std::string& name);
+
+}  // namespace sheen::tests
