@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "core/mesh/neighbours.h"
 #include "fitting/iwls/options.h"
 #include "fitting/representation.h"
+
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace sheen::fitting {
 
@@ -20,7 +20,8 @@ struct RepresentationOptions {
 /// Names in the order users should see them; the first is the default.
 std::vector<std::string> representation_names();
 
-/// An empty representation with one patch per vertex. Throws std::invalid_argument for an unknown name.
+/// An empty representation with one patch per vertex. Throws std::invalid_argument for an unknown
+/// name.
 std::unique_ptr<Representation> make_representation(const std::string& name,
                                                     const core::VertexNeighbours& neighbours,
                                                     const RepresentationOptions& options);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/samples/sample_batch.h"
+#include "fitting/light_field.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <vector>
-
-#include "core/samples/sample_batch.h"
-#include "fitting/light_field.h"
 
 namespace sheen::fitting {
 
@@ -17,9 +17,10 @@ struct ModelUpdate {
 
 /// Work done so far.
 struct FitStatistics {
-  std::size_t samples = 0;        ///< samples absorbed
-  std::size_t fits = 0;           ///< least-squares systems solved
-  std::size_t patch_views = 0;    ///< (patch, view) pairs seen: the denominator of fits per patch per view
+  std::size_t samples = 0;  ///< samples absorbed
+  std::size_t fits = 0;     ///< least-squares systems solved
+  std::size_t patch_views =
+      0;  ///< (patch, view) pairs seen: the denominator of fits per patch per view
 };
 
 /// A light field under construction: takes the samples of one view after the other.

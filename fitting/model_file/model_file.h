@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <filesystem>
-#include <memory>
-
 #include "core/mesh/mesh.h"
 #include "fitting/light_field.h"
+
+#include <filesystem>
+#include <memory>
 
 namespace sheen::fitting {
 
@@ -20,8 +20,8 @@ struct Model {
 void write_model(const std::filesystem::path& path, const core::Mesh& mesh,
                  const LightField& light_field);
 
-/// Reads it back, bit by bit what was written. Throws core::Error (bad_input) for truncated, altered or
-/// foreign files.
+/// Reads it back, bit by bit what was written. Throws core::Error (bad_input) for truncated,
+/// altered or foreign files.
 Model read_model(const std::filesystem::path& path);
 
 }  // namespace sheen::fitting
