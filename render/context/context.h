@@ -15,8 +15,8 @@ class Context {
   [[nodiscard]] virtual Function resolve(const char* name) const = 0;
 };
 
-/// Off screen in software (OSMesa), made current. Throws core::Error (run_failed) when the library or the
-/// version is missing.
+/// Off screen in software (OSMesa), made current. Throws core::Error (run_failed) when the library
+/// or the version is missing.
 std::unique_ptr<Context> make_osmesa_context();
 
 }  // namespace sheen::render

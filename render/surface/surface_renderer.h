@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <Eigen/Geometry>
-#include <opencv2/core/mat.hpp>
-
-#include <memory>
-
 #include "core/geometry/camera.h"
 #include "core/mesh/mesh.h"
 #include "fitting/light_field.h"
 #include "fitting/representation.h"
 #include "render/context/context.h"
+
+#include <Eigen/Geometry>
+#include <opencv2/core/mat.hpp>
+
+#include <memory>
 
 namespace sheen::render {
 

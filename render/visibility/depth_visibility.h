@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <memory>
-
 #include "core/visibility/visibility.h"
 #include "render/context/context.h"
+
+#include <memory>
 
 namespace sheen::render {
 

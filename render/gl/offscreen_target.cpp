@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#include "render/gl/offscreen_target.h"
+
+#include "core/diagnostics/error.h"
+
+#include <string>
+
+namespace sheen::render::gl {
+namespace {
+
+core::Error failure(int width_px, int height_px) {
+  return {core::Error::Kind::run_failed,
+          "picture of " + std::to_string(width_px) + " x " + std::to_string(height_px) + " pixels",
+          "cannot be drawn by this OpenGL driver", "use smaller pictures"};
+}
+
+Texture make_plane(const Functions& gl, GLenum format, int width_px, int height_px) {
+  Texture plane = make_texture(gl, GL_TEXTURE_2D);
+  gl.TextureStorage2D(plane.name(), 1, format, width_px, height_px);
+  return plane;
+}
+
+}  // namespace
+
+OffscreenTarget::OffscreenTarget(const Functions& gl, bool with_colour)
+    : gl_(gl), with_colour_(with_colour) {}
+
+GLuint OffscreenTarget::framebuffer(int width_px, int height_px) {
+  if (width_px == width_px_ && height_px == height_px_) return framebuffer_.name();
+  const int limit = integer_limit(gl_, GL_MAX_TEXTURE_SIZE);
+  if (width_px < 1 || height_px < 1 || width_px > limit || height_px > limit) {
+    throw failure(width_px, height_px);
+  }
+
+  // Make the planes and join them; the old ones go only once the new ones are complete.
+  Framebuffer made = make_framebuffer(gl_);
+  Texture depth = make_plane(gl_, GL_DEPTH_COMPONENT32F, width_px, height_px);
+  gl_.NamedFramebufferTexture(made.name(), GL_DEPTH_ATTACHMENT, depth.name(), 0);
+  Texture colour;
+  if (with_colour_) {
+    colour = make_plane(gl_, GL_RGBA8, width_px, height_px);
+    gl_.NamedFramebufferTexture(made.name(), GL_COLOR_ATTACHMENT0, colour.name(), 0);
+  }
+  if (gl_.CheckNamedFramebufferStatus(made.name(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
+    throw failure(width_px, height_px);
+  }
+  framebuffer_ = std::move(made);
+  depth_ = std::move(depth);
+  colour_ = std::move(colour);
+  width_px_ = width_px;
+  height_px_ = height_px;
+  return framebuffer_.name();
+}
+
+}  // namespace sheen::render::gl

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "render/gl/owners.h"
+
+namespace sheen::render::gl {
+
+/// Framebuffer with a 32-bit float depth buffer and, if wanted, RGBA8 colour, of the size last
+/// asked for.
+class OffscreenTarget {
+ public:
+  OffscreenTarget(const Functions& gl, bool with_colour);
+
+  /// Framebuffer of this size, contents unspecified after a change of size. The context is
+  /// current. Throws core::Error (run_failed) for sizes the driver cannot make.
+  GLuint framebuffer(int width_px, int height_px);
+
+ private:
+  const Functions& gl_;
+  bool with_colour_;
+  int width_px_ = 0;
+  int height_px_ = 0;
+  Texture colour_;
+  Texture depth_;
+  Framebuffer framebuffer_;
+};
+
+}  // namespace sheen::render::gl

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include "render/mean/mean_patch_shader.h"
+
+#include "fitting/mean/mean_light_field.h"
+#include "render/shaders/shader_text.h"
+#include "render/surface/patch_buffer.h"
+
+#include <algorithm>
+#include <cassert>
+
+namespace sheen::render::mean {
+namespace {
+
+using fitting::mean::MeanLightField;
+
+/// One texel per patch: r, g, b, weight.
+class MeanPatchShader final : public PatchShader {
+ public:
+  MeanPatchShader(const gl::Functions& gl, const MeanLightField& light_field)
+      : light_field_(light_field), buffer_(gl, light_field.patch_count(), 1) {
+    upload(all_patches(light_field.patch_count()));
+  }
+
+  [[nodiscard]] std::string glsl() const override {
+    return std::string(shader_text("mean/mean.glsl"));
+  }
+
+  std::size_t upload(std::span<const std::uint32_t> patches) override {
+    return buffer_.upload(patches, [this](std::size_t patch_idx, std::span<Eigen::half> texel) {
+      std::ranges::copy(light_field_.coefficients().subspan(3 * patch_idx, 3), texel.begin());
+      const bool observed = light_field_.observed()[patch_idx] != 0;
+      texel[3] = Eigen::half(observed ? 1.0f : fitting::kUnseenWeight);
+    });
+  }
+
+  void bind() const override { buffer_.bind(0); }
+
+ private:
+  const MeanLightField& light_field_;
+  PatchBuffer buffer_;
+};
+
+}  // namespace
+
+std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
+                                               const fitting::LightField& light_field) {
+  const auto* const mean = dynamic_cast<const MeanLightField*>(&light_field);
+  assert(mean != nullptr);
+  return std::make_unique<MeanPatchShader>(gl, *mean);
+}
+
+}  // namespace sheen::render::mean

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+// Closes the partition of unity: colour sum and weight sum were interpolated apart (eq. 7).
+// The alpha channel tells background (0), seen surface without support (0.5) and with (1).
+layout(location = 1) in vec4 corner_sums;
+layout(location = 0) out vec4 colour;
+
+void main() {
+  float alpha = corner_sums.a > 2.0 * UNSEEN_WEIGHT ? 1.0 : 0.5;
+  colour = vec4(clamp(corner_sums.rgb / corner_sums.a, 0.0, 1.0), alpha);
+}

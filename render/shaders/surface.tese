@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// Points inside a triangle: everything is linear on it until the lens is applied.
+layout(triangles, equal_spacing, ccw) in;
+layout(location = 0) in vec3 control_in_camera[];
+#ifdef SHADED
+layout(location = 1) in vec4 control_sums[];
+layout(location = 1) out vec4 corner_sums;
+#endif
+
+void main() {
+  // `precise` and the symmetric sum give both triangles at an edge the same point, bit by bit.
+  vec3 weights = gl_TessCoord;
+  precise vec3 in_camera = weights.x * control_in_camera[0] + weights.y * control_in_camera[1] +
+                           weights.z * control_in_camera[2];
+#ifdef SHADED
+  corner_sums = weights.x * control_sums[0] + weights.y * control_sums[1] +
+                weights.z * control_sums[2];
+#endif
+  gl_Position = clip_from_camera(in_camera);
+}

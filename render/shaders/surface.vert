@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// Evaluates the patch of a vertex. SHADED: colours wanted, else depth only. TESSELLATED: the lens is
+// applied after tessellation.
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 normal;
+
+#ifdef TESSELLATED
+layout(location = 0) out vec3 corner_in_camera;
+#endif
+#ifdef SHADED
+layout(location = 1) out vec4 corner_sums;
+#endif
+
+void main() {
+  vec3 in_camera = (camera_from_object * vec4(position, 1.0)).xyz;
+#ifdef SHADED
+  corner_sums = evaluate_patch(gl_VertexID, direction_on_disc(position, normal));
+#endif
+#ifdef TESSELLATED
+  corner_in_camera = in_camera;
+#else
+  gl_Position = clip_from_camera(in_camera);
+#endif
+}

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "render/surface/blind_pixels.h"
+
+#include <array>
+
+namespace sheen::render {
+namespace {
+
+bool same(const core::CameraModel& a, const core::CameraModel& b) {
+  const core::CameraModel::Intrinsics& p = a.intrinsics();
+  const core::CameraModel::Intrinsics& q = b.intrinsics();
+  return p.width_px == q.width_px && p.height_px == q.height_px && p.focal_px == q.focal_px &&
+         p.principal_px == q.principal_px && p.distortion == q.distortion;
+}
+
+bool corners_see(const core::CameraModel& camera) {
+  for (const double x : {0.0, camera.width_px() - 1.0}) {
+    for (const double y : {0.0, camera.height_px() - 1.0}) {
+      if (!camera.unproject({x, y})) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+const cv::Mat& BlindPixels::of(const core::CameraModel& camera) {
+  if (same(camera, camera_)) return mask_;
+  camera_ = camera;
+  mask_.release();
+  if (corners_see(camera)) return mask_;
+  mask_.create(camera.height_px(), camera.width_px(), CV_8UC1);
+  for (int y = 0; y < mask_.rows; ++y) {
+    for (int x = 0; x < mask_.cols; ++x) {
+      mask_.at<std::uint8_t>(y, x) = camera.unproject({x, y}) ? 0 : 255;
+    }
+  }
+  return mask_;
+}
+
+}  // namespace sheen::render

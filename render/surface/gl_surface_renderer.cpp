@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+#include "render/gl/offscreen_target.h"
+#include "render/surface/blind_pixels.h"
+#include "render/surface/patch_shader.h"
+#include "render/surface/surface_pass.h"
+#include "render/surface/surface_renderer.h"
+
+#include <opencv2/core.hpp>
+
+#include <cassert>
+
+namespace sheen::render {
+namespace {
+
+/// Alpha as shaders/surface.frag writes it: 0 background, 128 seen, 255 seen and supported.
+constexpr std::uint8_t kSupported = 255;
+
+class GlSurfaceRenderer final : public SurfaceRenderer {
+ public:
+  GlSurfaceRenderer(Context& context, const core::Mesh& mesh,
+                    const fitting::LightField& light_field)
+      : context_(context),
+        gl_(gl::load_functions(made_current(context))),
+        patches_(make_patch_shader(gl_, light_field)),
+        pass_(gl_, mesh, patches_->glsl()),
+        target_(gl_, true) {
+    assert(light_field.patch_count() == mesh.positions.size());
+  }
+
+  ~GlSurfaceRenderer() override { context_.make_current(); }
+  GlSurfaceRenderer(const GlSurfaceRenderer&) = delete;
+  GlSurfaceRenderer& operator=(const GlSurfaceRenderer&) = delete;
+  GlSurfaceRenderer(GlSurfaceRenderer&&) = delete;
+  GlSurfaceRenderer& operator=(GlSurfaceRenderer&&) = delete;
+
+  void upload(const fitting::ModelUpdate& update) override {
+    context_.make_current();
+    patches_->upload(update.patches);
+  }
+
+  RenderedView render(const core::CameraModel& camera,
+                      const Eigen::Isometry3d& camera_from_object) override {
+    // Draw.
+    context_.make_current();
+    const GLuint framebuffer = target_.framebuffer(camera.width_px(), camera.height_px());
+    patches_->bind();
+    pass_.draw(framebuffer, camera, camera_from_object);
+
+    // Read back; four bytes per pixel, so rows need no padding.
+    pixels_.create(camera.height_px(), camera.width_px(), CV_8UC4);
+    gl_.ReadPixels(0, 0, pixels_.cols, pixels_.rows, GL_BGRA, GL_UNSIGNED_BYTE, pixels_.data);
+    if (const cv::Mat& blind = blind_.of(camera); !blind.empty()) pixels_.setTo(0, blind);
+    return split();
+  }
+
+ private:
+  static const Context& made_current(Context& context) {
+    context.make_current();
+    return context;
+  }
+
+  [[nodiscard]] RenderedView split() const {
+    RenderedView view;
+    view.image.create(pixels_.size(), CV_8UC3);
+    cv::Mat alpha(pixels_.size(), CV_8UC1);
+    std::array<cv::Mat, 2> planes{view.image, alpha};
+    constexpr std::array<int, 8> from_to{0, 0, 1, 1, 2, 2, 3, 3};
+    cv::mixChannels(&pixels_, 1, planes.data(), planes.size(), from_to.data(), 4);
+    cv::compare(alpha, 0, view.mask, cv::CMP_GT);
+    cv::compare(alpha, kSupported, view.support, cv::CMP_EQ);
+    return view;
+  }
+
+  Context& context_;
+  gl::Functions gl_;
+  std::unique_ptr<PatchShader> patches_;
+  SurfacePass pass_;
+  gl::OffscreenTarget target_;
+  BlindPixels blind_;
+  cv::Mat pixels_;
+};
+
+}  // namespace
+
+std::unique_ptr<SurfaceRenderer> make_gl_surface_renderer(Context& context, const core::Mesh& mesh,
+                                                          const fitting::LightField& light_field) {
+  return std::make_unique<GlSurfaceRenderer>(context, mesh, light_field);
+}
+
+}  // namespace sheen::render

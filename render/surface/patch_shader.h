@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "fitting/light_field.h"
+#include "render/gl/functions.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace sheen::render {
+
+/// What one representation adds to the common renderer: its coefficients on the GPU and the GLSL
+/// that reads them. All members need the context current.
+class PatchShader {
+ public:
+  virtual ~PatchShader() = default;
+
+  /// GLSL that defines `vec4 evaluate_patch(int patch_idx, vec2 uv)`: colour sum and weight sum of
+  /// a patch, as LightField::evaluate.
+  [[nodiscard]] virtual std::string glsl() const = 0;
+
+  /// Sends the coefficients of these patches (ascending, no repeats), neighbouring ones together.
+  /// Returns the bytes handed to OpenGL.
+  virtual std::size_t upload(std::span<const std::uint32_t> patches) = 0;
+
+  /// Makes the coefficients available to the next draw.
+  virtual void bind() const = 0;
+};
+
+/// The shader of the light field's representation, all patches uploaded. `gl` and `light_field`
+/// must outlive it. Throws core::Error (run_failed) when the representation cannot be drawn, or is
+/// too large for the driver.
+std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
+                                               const fitting::LightField& light_field);
+
+}  // namespace sheen::render

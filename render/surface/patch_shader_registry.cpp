@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#include "core/diagnostics/error.h"
+#include "render/iwls/iwls_patch_shader.h"
+#include "render/mean/mean_patch_shader.h"
+#include "render/surface/patch_shader.h"
+
+namespace sheen::render {
+namespace {
+
+using Factory = std::unique_ptr<PatchShader> (*)(const gl::Functions&, const fitting::LightField&);
+
+/// One line per representation.
+constexpr std::pair<std::string_view, Factory> kPatchShaders[] = {
+    {"iwls", iwls::make_patch_shader},
+    {"mean", mean::make_patch_shader},
+};
+
+}  // namespace
+
+std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
+                                               const fitting::LightField& light_field) {
+  for (const auto& [name, make] : kPatchShaders) {
+    if (name == light_field.representation()) return make(gl, light_field);
+  }
+  throw core::Error(core::Error::Kind::run_failed,
+                    "representation " + std::string(light_field.representation()),
+                    "has no patch shader in this program", "use the reference renderer");
+}
+
+}  // namespace sheen::render

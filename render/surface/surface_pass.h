@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "core/geometry/camera.h"
+#include "core/mesh/mesh.h"
+#include "render/gl/owners.h"
+
+#include <Eigen/Geometry>
+
+#include <string>
+
+namespace sheen::render {
+
+/// A mesh on the GPU, drawn as a camera with a lens sees it into the framebuffer that is bound:
+/// front faces only, nearest first, depth values near / depth (1 at the near plane, 0 at infinity).
+/// Where the lens would bend an edge visibly the triangles are tessellated first.
+class SurfacePass {
+ public:
+  /// Depth only when `patch_glsl` is empty; else it defines
+  /// `vec4 evaluate_patch(int patch_idx, vec2 uv)`, colour sum and weight sum of a patch. The
+  /// context is current; `gl` outlives the pass. Throws core::Error (run_failed).
+  SurfacePass(const gl::Functions& gl, const core::Mesh& mesh, std::string patch_glsl);
+
+  /// Clears the bound framebuffer `target` and draws.
+  void draw(GLuint target, const core::CameraModel& camera,
+            const Eigen::Isometry3d& camera_from_object);
+
+  /// Depth of the near plane, metres: a thousandth of the mesh's radius, which the reversed depth
+  /// can afford.
+  [[nodiscard]] float near_m() const { return near_m_; }
+
+ private:
+  void measure(const core::Mesh& mesh);
+  void upload(const core::Mesh& mesh);
+  void set_state(const core::CameraModel& camera) const;
+  [[nodiscard]] bool needs_tessellation(const Eigen::Isometry3d& camera_from_object,
+                                        double longest_segment) const;
+  const gl::Program& program(bool tessellated);
+
+  const gl::Functions& gl_;
+  std::string patch_glsl_;
+  Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  ///< of the bounds, object frame
+  double radius_m_ = 0;
+  double longest_edge_m_ = 0;
+  float near_m_ = 0;
+  GLsizei index_count_ = 0;
+  gl::Buffer vertices_;
+  gl::Buffer indices_;
+  gl::Buffer view_block_;
+  gl::VertexArray vertex_array_;
+  gl::Program plain_;
+  gl::Program tessellated_;  ///< made at first need
+};
+
+}  // namespace sheen::render

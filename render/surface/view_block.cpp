@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include "render/surface/view_block.h"
+
+#include "core/samples/vertex_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sheen::render {
+namespace {
+
+std::array<float, 4> floats(double x, double y, double z, double w) {
+  return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z),
+          static_cast<float>(w)};
+}
+
+bool has_distortion(const core::CameraModel& camera) {
+  const auto& k = camera.intrinsics().distortion;
+  return std::any_of(k.begin(), k.end(), [](double value) { return value != 0; });
+}
+
+/// Distance from the axis, in the plane z = 1, of what the picture's corners see.
+double widest_radius(const core::CameraModel& camera) {
+  double widest = 0;
+  for (const double x : {-0.5, camera.width_px() - 0.5}) {
+    for (const double y : {-0.5, camera.height_px() - 0.5}) {
+      const auto ray = camera.unproject({x, y});
+      if (!ray) return camera.valid_radius();
+      widest = std::max(widest, ray->head<2>().norm());
+    }
+  }
+  return widest;
+}
+
+/// Largest second derivative of the lens map at a point, over a few directions.
+double curvature(const core::CameraModel& camera, const Eigen::Vector2d& p) {
+  constexpr double h = 1e-3;
+  constexpr double diagonal = 0.7071067811865476;
+  double largest = 0;
+  for (const Eigen::Vector2d& direction :
+       {Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1), Eigen::Vector2d(diagonal, diagonal),
+        Eigen::Vector2d(diagonal, -diagonal)}) {
+    const Eigen::Vector2d second = camera.distort(p + h * direction) - 2 * camera.distort(p) +
+                                   camera.distort(p - h * direction);
+    largest = std::max(largest, second.norm() / (h * h));
+  }
+  return largest;
+}
+
+}  // namespace
+
+ViewBlock make_view_block(const core::CameraModel& camera,
+                          const Eigen::Isometry3d& camera_from_object, double near_m,
+                          double longest_segment) {
+  const core::CameraModel::Intrinsics& in = camera.intrinsics();
+  const auto& k = in.distortion;
+  const Eigen::Vector3d eye = core::eye_in_object(camera_from_object).cast<double>();
+  ViewBlock block{};
+  Eigen::Map<Eigen::Matrix4f>(block.camera_from_object.data()) =
+      camera_from_object.matrix().cast<float>();
+  block.pinhole =
+      floats(in.focal_px.x(), in.focal_px.y(), in.principal_px.x(), in.principal_px.y());
+  block.low_order = floats(k[0], k[1], k[2], k[3]);
+  block.high_order = floats(k[4], k[5], k[6], k[7]);
+  block.eye_and_near = floats(eye.x(), eye.y(), eye.z(), near_m);
+  block.picture =
+      floats(in.width_px, in.height_px, camera.valid_radius(), std::min(longest_segment, 1e9));
+  return block;
+}
+
+double longest_straight_segment(const core::CameraModel& camera) {
+  if (!has_distortion(camera)) return std::numeric_limits<double>::infinity();
+
+  // Look for the strongest bend on a grid over the disc that the picture sees.
+  constexpr int steps = 8;
+  const double radius = std::min(widest_radius(camera), camera.valid_radius());
+  double strongest = 0;
+  for (int i = -steps; i <= steps; ++i) {
+    for (int j = -steps; j <= steps; ++j) {
+      const Eigen::Vector2d p = Eigen::Vector2d(i, j) * (radius / steps);
+      if (p.norm() <= radius * (1 + 1e-9)) strongest = std::max(strongest, curvature(camera, p));
+    }
+  }
+  const double focal_px = camera.intrinsics().focal_px.maxCoeff();
+  return std::sqrt(8 * kSagittaLimitPx / (focal_px * std::max(strongest, 1e-12)));
+}
+
+}  // namespace sheen::render

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "core/geometry/camera.h"
+
+#include <Eigen/Geometry>
+
+#include <array>
+
+namespace sheen::render {
+
+/// How far a straight edge of the mesh may deviate from the curve the lens makes of it, in pixels.
+inline constexpr double kSagittaLimitPx = 0.05;
+
+/// Uniform block `View` of shaders/lens.glsl, std140.
+struct ViewBlock {
+  std::array<float, 16> camera_from_object;  ///< column-major
+  std::array<float, 4> pinhole;
+  std::array<float, 4> low_order;
+  std::array<float, 4> high_order;
+  std::array<float, 4> eye_and_near;
+  std::array<float, 4> picture;
+};
+
+/// `near_m` is the depth of the near plane, `longest_segment` see below (infinity becomes a large
+/// number).
+ViewBlock make_view_block(const core::CameraModel& camera,
+                          const Eigen::Isometry3d& camera_from_object, double near_m,
+                          double longest_segment);
+
+/// Longest straight segment, measured in the plane z = 1, that the lens bends by no more than
+/// `kSagittaLimitPx` anywhere in the picture; infinity without distortion. The middle of a segment
+/// of length s lies about |D''| s^2 / 8 beside the image of its ends, D being the lens map.
+double longest_straight_segment(const core::CameraModel& camera);
+
+}  // namespace sheen::render
