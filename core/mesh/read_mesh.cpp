@@ -2,6 +2,7 @@
 #include "core/mesh/read_mesh.h"
 
 #include "core/diagnostics/error.h"
+#include "core/mesh/ply_file.h"
 #include "core/mesh/repair.h"
 
 #include <assimp/Importer.hpp>
@@ -145,14 +146,18 @@ void check_positions(const Mesh& mesh, const fs::path& path) {
   }
 }
 
+Mesh read_by_assimp(const fs::path& path) {
+  Assimp::Importer importer;
+  return flattened(load_scene(importer, path), path);
+}
+
 }  // namespace
 
 Mesh read_mesh(const std::filesystem::path& path) {
   // Load.
   check_file(path);
-  Assimp::Importer importer;
-  Mesh mesh = flattened(load_scene(importer, path), path);
-  importer.FreeScene();
+  const bool is_ply = lower_extension(path) == ".ply";
+  Mesh mesh = is_ply ? read_ply(path) : read_by_assimp(path);
 
   // Repair, from the corners to the surface.
   check_positions(mesh, path);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/mesh/mesh.h"
+#include "core/mesh/ply_file.h"  // write_ply
 
 #include <filesystem>
 
@@ -17,8 +18,5 @@ namespace sheen::core {
 /// turned, with its normals. Throws Error (bad_input) for unreadable files, no triangles, NaN or
 /// infinite positions.
 Mesh read_mesh(const std::filesystem::path& path);
-
-/// Writes a binary little-endian PLY with normals, beside the final name and then moved into place.
-void write_ply(const std::filesystem::path& path, const Mesh& mesh);
 
 }  // namespace sheen::core
