@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: MIT
+#include "capture/synthetic/synthetic_session.h"
+
+#include "capture/calibration/camera_file.h"
+#include "capture/pose/board.h"
+#include "capture/pose/trajectory.h"
+#include "capture/synthetic/camera_path.h"
+#include "capture/synthetic/hash.h"
+#include "capture/synthetic/photograph.h"
+#include "capture/synthetic/torus_knot.h"
+#include "core/diagnostics/error.h"
+#include "core/files/staged_output.h"
+#include "core/mesh/read_mesh.h"
+
+#include <Eigen/Geometry>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/videoio.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace sheen::capture::synthetic {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kFps = 30;
+constexpr int kHeldOutSamplesFactor = 4;
+constexpr float kKnotLift = 0.01f;
+constexpr double kMinRadius = 0.01;
+constexpr double kMaxRadius = 2;
+
+void require_range(const char* option, int value, int low, int high) {
+  if (value >= low && value <= high) return;
+  throw std::invalid_argument(std::string(option) + ": " + std::to_string(value) + " is not in [" +
+                              std::to_string(low) + ", " + std::to_string(high) + "]");
+}
+
+core::Error write_failure(const fs::path& path) {
+  return {core::Error::Kind::run_failed, path, "cannot be written",
+          "check free space and permissions"};
+}
+
+/// Counts pictures for the caller.
+class Counter {
+ public:
+  Counter(const Progress& progress, int total) : progress_(progress), total_(total) {}
+  void advance() {
+    if (++done_; progress_) progress_(done_, total_);
+  }
+
+ private:
+  const Progress& progress_;
+  int total_;
+  int done_ = 0;
+};
+
+std::vector<Trajectory::Entry> walk(const CameraPath& path, int views, bool closed) {
+  std::vector<Trajectory::Entry> entries;
+  for (int i = 0; i < views; ++i) {
+    const double last = closed ? views : std::max(views - 1, 1);
+    entries.push_back({static_cast<double>(i), path.stage_from_camera(i / last)});
+  }
+  return entries;
+}
+
+nlohmann::ordered_json transform_json(const Eigen::Isometry3d& transform) {
+  nlohmann::ordered_json numbers = nlohmann::ordered_json::array();
+  for (int row = 0; row < 4; ++row) {
+    for (int column = 0; column < 4; ++column) numbers.push_back(transform.matrix()(row, column));
+  }
+  return numbers;
+}
+
+void write_text(const fs::path& path, const std::string& text) {
+  std::ofstream file(path, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file) throw write_failure(path);
+}
+
+/// Files both sessions have: session.json, camera.yaml, object.ply.
+void write_common(const fs::path& folder, const Scene& scene, const core::CameraModel& camera,
+                  nlohmann::ordered_json frames, const char* pose_key, const char* pose_file) {
+  nlohmann::ordered_json session;
+  session["format"] = "sheen-session";
+  session["version"] = 1;
+  session["frames"] = std::move(frames);
+  session["camera"] = "camera.yaml";
+  session[pose_key] = pose_file;
+  session["object"] = {{"mesh", "object.ply"},
+                       {"T_stage_object", transform_json(scene.stage_from_object())}};
+  write_text(folder / "session.json", session.dump(2) + "\n");
+  write_camera(folder / "camera.yaml", camera);
+  core::write_ply(folder / "object.ply", scene.object());
+}
+
+void write_recording(const fs::path& folder, const Scene& scene, const core::CameraModel& camera,
+                     const SyntheticOptions& options, Counter& counter) {
+  const CameraPath path(recording_path(options.seed), scene.object_centre(),
+                        scene.object_radius_m());
+  const std::vector<Trajectory::Entry> poses = walk(path, options.frames, false);
+  write_common(folder, scene, camera, {{"video", "frames.avi"}, {"fps", kFps}}, "board",
+               "board.yaml");
+  write_board(folder / "board.yaml", scene.board());
+  write_trajectory(folder / "truth_poses.txt", poses);
+
+  // OpenCV's own writer: the only one that honours the quality on every machine.
+  const fs::path video = folder / "frames.avi";
+  cv::VideoWriter writer(video.string(), cv::CAP_OPENCV_MJPEG,
+                         cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), kFps,
+                         {options.width_px, options.height_px});
+  if (!writer.isOpened()) throw write_failure(video);
+  writer.set(cv::VIDEOWRITER_PROP_QUALITY, options.jpeg_quality);
+
+  const Photographer photographer(camera);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const std::uint32_t seed = hash(options.seed, static_cast<std::uint32_t>(i));
+    const Exposure exposure = photographer.expose(scene, poses[i].stage_from_camera,
+                                                  options.samples, seed, options.threads);
+    writer.write(develop(exposure.light, SensorNoise{}, hash(seed, 1U)));
+    counter.advance();
+  }
+  writer.release();
+  if (std::error_code error; fs::file_size(video, error) == 0 || error) throw write_failure(video);
+}
+
+void write_held_out(const fs::path& folder, const Scene& scene, const core::CameraModel& camera,
+                    const SyntheticOptions& options, Counter& counter) {
+  const CameraPath path(held_out_path(options.seed), scene.object_centre(),
+                        scene.object_radius_m());
+  const std::vector<Trajectory::Entry> poses = walk(path, options.held_out, true);
+  fs::create_directories(folder / "images");
+  write_common(folder, scene, camera, {{"images", "images/%04d.png"}}, "poses", "poses.txt");
+  write_trajectory(folder / "poses.txt", poses);
+
+  const Photographer photographer(camera);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Exposure exposure = photographer.expose(
+        scene, poses[i].stage_from_camera, kHeldOutSamplesFactor * options.samples,
+        hash(options.seed, static_cast<std::uint32_t>(i), 2U), options.threads);
+    std::array<char, 32> name{};
+    std::snprintf(name.data(), name.size(), "%04zu.png", i);
+    const fs::path file = folder / "images" / name.data();
+    if (!cv::imwrite(file.string(), develop(exposure.light, kNoNoise, 0),
+                     {cv::IMWRITE_PNG_COMPRESSION, 9})) {
+      throw write_failure(file);
+    }
+    counter.advance();
+  }
+}
+
+}  // namespace
+
+void SyntheticOptions::check() const {
+  require_range("vertices", vertices, kMinKnotVertices, kMaxKnotVertices);
+  require_range("width", width_px, 160, 4096);
+  require_range("height", height_px, 120, 4096);
+  require_range("frames", frames, 2, 100'000);
+  require_range("held-out", held_out, 0, 10'000);
+  require_range("samples", samples, 1, 256);
+  require_range("quality", jpeg_quality, 1, 100);
+  if (threads < 1) throw std::invalid_argument("threads: must be at least 1");
+}
+
+core::CameraModel synthetic_camera(int width_px, int height_px) {
+  core::CameraModel::Intrinsics intrinsics;
+  intrinsics.width_px = width_px;
+  intrinsics.height_px = height_px;
+  const double focal = 0.9 * std::max(width_px, height_px);
+  intrinsics.focal_px = {focal, 1.002 * focal};
+  intrinsics.principal_px = {0.5 * width_px + 3.2, 0.5 * height_px - 2.6};
+  intrinsics.distortion = {-0.12, 0.05, 1e-3, -8e-4, 0, 0, 0, 0};
+  return core::CameraModel(intrinsics);
+}
+
+Scene make_scene(const SyntheticOptions& options) {
+  if (!options.mesh) {
+    return {options.scene, torus_knot(options.vertices), kKnotLift, options.threads};
+  }
+  core::Mesh mesh = core::read_mesh(*options.mesh);
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& p : mesh.positions) box.extend(p);
+  const double radius = 0.5 * static_cast<double>(box.sizes().maxCoeff());
+  if (!(radius >= kMinRadius && radius <= kMaxRadius)) {
+    throw core::bad_input(*options.mesh, "is " + std::to_string(2 * radius) + " m across",
+                          "give a mesh in metres, between 0.02 and 4 across");
+  }
+  return {options.scene, std::move(mesh), 0.0f, options.threads};
+}
+
+void write_synthetic_session(const fs::path& folder, const SyntheticOptions& options,
+                             const Progress& progress) {
+  options.check();
+  const Scene scene = make_scene(options);
+  const core::CameraModel camera = synthetic_camera(options.width_px, options.height_px);
+  core::StagedOutput staged(folder);
+  fs::create_directories(staged.path());
+  Counter counter(progress, options.frames + options.held_out);
+  write_recording(staged.path(), scene, camera, options, counter);
+  if (options.held_out > 0) {
+    write_held_out(staged.path() / "held_out", scene, camera, options, counter);
+  }
+  staged.commit();
+}
+
+}  // namespace sheen::capture::synthetic
