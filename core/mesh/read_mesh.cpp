@@ -2,6 +2,7 @@
 #include "core/mesh/read_mesh.h"
 
 #include "core/diagnostics/error.h"
+#include "core/mesh/glb_guard.h"
 #include "core/mesh/ply_file.h"
 #include "core/mesh/repair.h"
 
@@ -33,7 +34,7 @@ std::string lower_extension(const fs::path& path) {
 
 void check_file(const fs::path& path) {
   const std::string extension = lower_extension(path);
-  if (extension != ".ply" && extension != ".obj" && extension != ".glb" && extension != ".gltf") {
+  if (extension != ".ply" && extension != ".obj" && extension != ".glb") {
     throw bad_input(path, "is not a mesh format that can be read", "convert it to PLY, OBJ or GLB");
   }
   std::error_code failure;
@@ -156,12 +157,13 @@ Mesh read_by_assimp(const fs::path& path) {
 Mesh read_mesh(const std::filesystem::path& path) {
   // Load.
   check_file(path);
-  const bool is_ply = lower_extension(path) == ".ply";
-  Mesh mesh = is_ply ? read_ply(path) : read_by_assimp(path);
+  const std::string extension = lower_extension(path);
+  if (extension == ".glb") check_glb(path);
+  Mesh mesh = extension == ".ply" ? read_ply(path) : read_by_assimp(path);
 
   // Repair, from the corners to the surface.
   check_positions(mesh, path);
-  if (lower_extension(path) == ".obj") join_identical_vertices(mesh);
+  if (extension == ".obj") join_identical_vertices(mesh);
   drop_degenerate_triangles(mesh);
   if (mesh.triangles.empty()) {
     throw bad_input(path, "has no triangles", "give a surface, not a point cloud");

@@ -8,7 +8,7 @@
 
 namespace sheen::core {
 
-/// Reads PLY, OBJ, GLB or glTF; transforms of nodes are applied, several meshes become one.
+/// Reads PLY, OBJ or GLB; transforms of nodes are applied, several meshes become one.
 /// Polygons are cut into triangles, degenerate triangles are dropped. PLY and glTF: vertices keep
 /// number and order of the file, also those that no triangle uses and those that share a position
 /// (hard edges), so that patch indices mean vertex indices. OBJ: corners that share a position and
