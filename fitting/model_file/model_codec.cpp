@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#include "fitting/model_file/model_codec.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace sheen::fitting {
+
+const nlohmann::json& required(const nlohmann::json& object, const char* name) {
+  if (object.is_object()) {
+    const auto member = object.find(name);
+    if (member != object.end()) return *member;
+  }
+  throw ModelFault(std::string("it has no \"") + name + "\"");
+}
+
+std::size_t required_size(const nlohmann::json& object, const char* name) {
+  const nlohmann::json& value = required(object, name);
+  constexpr std::uint64_t largest = std::uint64_t{1} << 53;  // JSON numbers are exact up to here
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() > largest) {
+    throw ModelFault(std::string("its \"") + name + "\" is not a count");
+  }
+  return value.get<std::size_t>();
+}
+
+double required_number(const nlohmann::json& object, const char* name) {
+  const nlohmann::json& value = required(object, name);
+  if (!value.is_number() || !std::isfinite(value.get<double>())) {
+    throw ModelFault(std::string("its \"") + name + "\" is not a number");
+  }
+  return value.get<double>();
+}
+
+std::string required_string(const nlohmann::json& object, const char* name) {
+  const nlohmann::json& value = required(object, name);
+  if (!value.is_string()) throw ModelFault(std::string("its \"") + name + "\" is not a text");
+  return value.get<std::string>();
+}
+
+std::vector<Eigen::half> required_halves(const ModelPart& part, const char* name,
+                                         std::size_t count) {
+  const auto found = part.arrays.find(name);
+  if (found == part.arrays.end()) throw ModelFault(std::string("it has no array \"") + name + "\"");
+  const std::span<const std::byte> bytes = found->second;
+  // The division keeps a huge count from wrapping around.
+  if (bytes.size() % sizeof(Eigen::half) != 0 || bytes.size() / sizeof(Eigen::half) != count) {
+    throw ModelFault(std::string("its array \"") + name + "\" has " + std::to_string(bytes.size()) +
+                     " bytes instead of " + std::to_string(count) + " numbers");
+  }
+  std::vector<Eigen::half> values(count);
+  if (count > 0) std::memcpy(values.data(), bytes.data(), bytes.size());
+  for (const Eigen::half value : values) {
+    if (!(Eigen::numext::isfinite)(value)) {
+      throw ModelFault(std::string("its array \"") + name + "\" holds NaN or infinity");
+    }
+  }
+  return values;
+}
+
+}  // namespace sheen::fitting

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "fitting/light_field.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sheen::fitting {
+
+/// What is wrong with a model file, without its name: `read_model` adds it.
+class ModelFault : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// One representation's part of a model file (docs/formats.md, "model").
+struct ModelPart {
+  nlohmann::json parameters = nlohmann::json::object();
+  /// Named arrays; in the file each is one bufferView. They point into the light field or the file.
+  std::map<std::string, std::span<const std::byte>> arrays;
+};
+
+/// How one representation writes and reads its part. Patch count and observed flags are common to
+/// all and kept outside of the part.
+struct ModelCodec {
+  std::string_view representation;
+  /// The result points into `light_field`.
+  ModelPart (*encode)(const LightField& light_field);
+  /// Throws ModelFault for anything that `encode` does not write.
+  std::unique_ptr<const LightField> (*decode)(const ModelPart& part,
+                                              std::vector<std::uint8_t> observed);
+};
+
+/// One line per representation (registry.cpp).
+std::span<const ModelCodec> model_codecs();
+
+/// Member `name` of an object, or ModelFault.
+const nlohmann::json& required(const nlohmann::json& object, const char* name);
+/// The same as an integer in [0, 2^53], a finite number, a string.
+std::size_t required_size(const nlohmann::json& object, const char* name);
+double required_number(const nlohmann::json& object, const char* name);
+std::string required_string(const nlohmann::json& object, const char* name);
+
+/// An array of the part as `count` finite half floats, or ModelFault.
+std::vector<Eigen::half> required_halves(const ModelPart& part, const char* name,
+                                         std::size_t count);
+
+}  // namespace sheen::fitting

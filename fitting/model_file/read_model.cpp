@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+#include "core/diagnostics/error.h"
+#include "fitting/model_file/checksum.h"
+#include "fitting/model_file/document.h"
+#include "fitting/model_file/glb.h"
+#include "fitting/model_file/model_codec.h"
+#include "fitting/model_file/model_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <limits>
+
+namespace sheen::fitting {
+namespace {
+
+using nlohmann::json;
+
+std::string read_bytes(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary | std::ios::ate);
+  const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
+  if (size < 0 || std::filesystem::is_directory(path)) throw ModelFault("it cannot be opened");
+  if (size > static_cast<std::streamoff>(std::numeric_limits<std::uint32_t>::max())) {
+    throw ModelFault("it is larger than a glb file can be");
+  }
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  file.seekg(0);
+  file.read(bytes.data(), static_cast<std::streamsize>(size));
+  if (!file) throw ModelFault("it cannot be read to its end");
+  return bytes;
+}
+
+const json& element(const json& document, const char* list, std::size_t idx) {
+  const json& elements = required(document, list);
+  if (!elements.is_array() || idx >= elements.size()) {
+    throw ModelFault(std::string("its \"") + list + "\" has no entry " + std::to_string(idx));
+  }
+  return elements[idx];
+}
+
+// Bytes of a bufferView, checked against the file.
+std::span<const std::byte> view_bytes(const Glb& glb, std::size_t view_idx) {
+  const json& view = element(glb.document, "bufferViews", view_idx);
+  const std::size_t offset = required_size(view, "byteOffset");
+  const std::size_t length = required_size(view, "byteLength");
+  if (required_size(view, "buffer") != 0 || view.contains("byteStride")) {
+    throw ModelFault("a bufferView is not packed into the file's own buffer");
+  }
+  if (offset > glb.binary.size() || length > glb.binary.size() - offset) {
+    throw ModelFault("a bufferView reaches beyond the file");
+  }
+  return glb.binary.subspan(offset, length);
+}
+
+// An accessor as `write_model` writes them: one per bufferView, packed.
+template <typename T>
+std::vector<T> read_accessor(const Glb& glb, const json& owner, const char* name,
+                             unsigned component_type, const char* type,
+                             std::size_t elements_per_value) {
+  const json& accessor = element(glb.document, "accessors", required_size(owner, name));
+  if (required_size(accessor, "componentType") != component_type ||
+      required_string(accessor, "type") != type || accessor.contains("byteOffset") ||
+      accessor.contains("sparse")) {
+    throw ModelFault(std::string("its ") + name + " are stored in a form sheen does not write");
+  }
+  const std::size_t count = required_size(accessor, "count");
+  const auto bytes = view_bytes(glb, required_size(accessor, "bufferView"));
+  if (count % elements_per_value != 0 || bytes.size() % sizeof(T) != 0 ||
+      bytes.size() / sizeof(T) != count / elements_per_value || count == 0) {
+    throw ModelFault(std::string("the size of its ") + name + " does not fit their count");
+  }
+  std::vector<T> values(bytes.size() / sizeof(T));
+  std::memcpy(static_cast<void*>(values.data()), bytes.data(), bytes.size());
+  return values;
+}
+
+void check_mesh(const core::Mesh& mesh) {
+  if (mesh.normals.size() != mesh.positions.size()) {
+    throw ModelFault("it has not as many normals as positions");
+  }
+  for (const Eigen::Vector3f& position : mesh.positions) {
+    if (!position.allFinite()) throw ModelFault("a position is not finite");
+  }
+  for (const Eigen::Vector3f& normal : mesh.normals) {
+    if (!(std::abs(normal.norm() - 1.0f) < 1e-3f)) throw ModelFault("a normal has not unit length");
+  }
+  for (const auto& triangle : mesh.triangles) {
+    if (triangle.maxCoeff() >= mesh.positions.size()) {
+      throw ModelFault("a triangle names a vertex that does not exist");
+    }
+  }
+}
+
+core::Mesh read_mesh_part(const Glb& glb) {
+  const json& primitive = element(element(glb.document, "meshes", 0), "primitives", 0);
+  const json& attributes = required(primitive, "attributes");
+  using Triangle = decltype(core::Mesh::triangles)::value_type;
+  core::Mesh mesh;
+  mesh.positions = read_accessor<Eigen::Vector3f>(glb, attributes, "POSITION", kFloat, "VEC3", 1);
+  mesh.normals = read_accessor<Eigen::Vector3f>(glb, attributes, "NORMAL", kFloat, "VEC3", 1);
+  mesh.triangles = read_accessor<Triangle>(glb, primitive, "indices", kUnsignedInt, "SCALAR", 3);
+  check_mesh(mesh);
+  return mesh;
+}
+
+void check_conventions(const json& extension) {
+  if (required_size(extension, "version") != kExtensionVersion) {
+    throw ModelFault("its version of " + std::string(kExtension) + " is not 1");
+  }
+  if (required_string(extension, "directionMap") != kDirectionMap ||
+      required_string(extension, "tangentFrame") != kTangentFrame ||
+      required_string(extension, "colorSpace") != kColourSpace) {
+    throw ModelFault("its direction map, tangent frame or colour space is unknown");
+  }
+}
+
+std::vector<std::uint8_t> read_observed(const Glb& glb, const json& extension,
+                                        std::size_t patch_count) {
+  const auto bytes = view_bytes(glb, required_size(extension, "observed"));
+  if (bytes.size() != patch_count) throw ModelFault("it has not one observed flag per vertex");
+  std::vector<std::uint8_t> observed(patch_count);
+  std::memcpy(observed.data(), bytes.data(), bytes.size());
+  if (std::any_of(observed.begin(), observed.end(), [](std::uint8_t flag) { return flag > 1; })) {
+    throw ModelFault("an observed flag is neither 0 nor 1");
+  }
+  return observed;
+}
+
+ModelPart read_part(const Glb& glb, const json& extension) {
+  ModelPart part;
+  part.parameters = required(extension, "parameters");
+  const json& arrays = required(extension, "arrays");
+  if (!arrays.is_object()) throw ModelFault("its \"arrays\" is not an object");
+  for (const auto& [name, view] : arrays.items()) {
+    part.arrays[name] = view_bytes(glb, required_size(arrays, name.c_str()));
+  }
+  return part;
+}
+
+std::unique_ptr<const LightField> read_light_field(const Glb& glb, std::size_t patch_count) {
+  const json& extensions = required(glb.document, "extensions");
+  const json& extension = required(extensions, kExtension);
+  check_conventions(extension);
+  const std::string name = required_string(extension, "representation");
+  for (const ModelCodec& codec : model_codecs()) {
+    if (codec.representation != name) continue;
+    return codec.decode(read_part(glb, extension), read_observed(glb, extension, patch_count));
+  }
+  throw ModelFault("its representation \"" + name.substr(0, 40) + "\" is unknown");
+}
+
+Model parse_model(std::string file) {
+  const Glb glb = parse_glb(file);
+  const json& extensions = required(glb.document, "extensions");
+  if (!extensions.is_object() || !extensions.contains(kExtension)) {
+    throw ModelFault(std::string("it does not hold the extension ") + kExtension);
+  }
+  if (!is_sealed(file)) throw ModelFault("its checksum does not fit: the file was altered");
+  Model model;
+  model.mesh = read_mesh_part(glb);
+  model.light_field = read_light_field(glb, model.mesh.positions.size());
+  return model;
+}
+
+}  // namespace
+
+Model read_model(const std::filesystem::path& path) {
+  try {
+    return parse_model(read_bytes(path));
+  } catch (const ModelFault& fault) {
+    throw core::bad_input(path, std::string("no usable sheen model: ") + fault.what(),
+                          "give a .glb file as sheen wrote it, or make it again with sheen replay");
+  }
+}
+
+}  // namespace sheen::fitting

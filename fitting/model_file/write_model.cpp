@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "core/diagnostics/error.h"
+#include "core/files/staged_output.h"
+#include "fitting/model_file/checksum.h"
+#include "fitting/model_file/document.h"
+#include "fitting/model_file/glb.h"
+#include "fitting/model_file/model_codec.h"
+#include "fitting/model_file/model_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <fstream>
+
+namespace sheen::fitting {
+namespace {
+
+using nlohmann::json;
+
+const ModelCodec& codec_of(const LightField& light_field) {
+  const auto codecs = model_codecs();
+  const auto codec = std::find_if(codecs.begin(), codecs.end(), [&](const ModelCodec& candidate) {
+    return candidate.representation == light_field.representation();
+  });
+  assert(codec != codecs.end());
+  return *codec;
+}
+
+template <typename T>
+std::span<const std::byte> bytes_of(const std::vector<T>& values) {
+  return std::as_bytes(std::span(values));
+}
+
+json as_json(const Eigen::Vector3f& v) {
+  return {static_cast<double>(v.x()), static_cast<double>(v.y()), static_cast<double>(v.z())};
+}
+
+// Our colours are display-referred, glTF's vertex colours are linear.
+std::uint16_t linear_from_srgb(float srgb) {
+  const float linear = srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
+  return static_cast<std::uint16_t>(std::lround(std::clamp(linear, 0.0f, 1.0f) * 65535.0f));
+}
+
+std::vector<std::array<std::uint16_t, 4>> vertex_colours(const LightField& light_field) {
+  std::vector<std::array<std::uint16_t, 4>> colours(light_field.patch_count());
+  for (std::size_t patch = 0; patch < colours.size(); ++patch) {
+    const Eigen::Vector3f srgb = light_field.mean_colour(patch);
+    colours[patch] = {linear_from_srgb(srgb.x()), linear_from_srgb(srgb.y()),
+                      linear_from_srgb(srgb.z()), 65535};
+  }
+  return colours;
+}
+
+// What any glTF viewer shows: the mesh with its mean colours, unlit.
+void add_mesh(const core::Mesh& mesh, const LightField& light_field, DocumentBuilder& builder) {
+  const std::size_t vertices = mesh.positions.size();
+  json attributes;
+  const std::size_t position =
+      builder.add_accessor(bytes_of(mesh.positions), kArrayBuffer, kFloat, "VEC3", vertices);
+  Eigen::Vector3f lowest = mesh.positions.front();
+  Eigen::Vector3f highest = lowest;
+  for (const Eigen::Vector3f& p : mesh.positions) {
+    lowest = lowest.cwiseMin(p);
+    highest = highest.cwiseMax(p);
+  }
+  builder.document["accessors"][position]["min"] = as_json(lowest);
+  builder.document["accessors"][position]["max"] = as_json(highest);
+  attributes["POSITION"] = position;
+  attributes["NORMAL"] =
+      builder.add_accessor(bytes_of(mesh.normals), kArrayBuffer, kFloat, "VEC3", vertices);
+  const std::size_t colour = builder.add_accessor(bytes_of(vertex_colours(light_field)),
+                                                  kArrayBuffer, kUnsignedShort, "VEC4", vertices);
+  builder.document["accessors"][colour]["normalized"] = true;
+  attributes["COLOR_0"] = colour;
+  const std::size_t indices =
+      builder.add_accessor(bytes_of(mesh.triangles), kElementArrayBuffer, kUnsignedInt, "SCALAR",
+                           3 * mesh.triangles.size());
+  builder.document["meshes"] = {
+      {{"primitives",
+        {{{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", 4}}}}}};
+}
+
+void add_scene(json& document) {
+  document["asset"] = {{"version", "2.0"}, {"generator", "sheen"}};
+  document["scene"] = 0;
+  document["scenes"] = {{{"nodes", {0}}}};
+  document["nodes"] = {{{"mesh", 0}}};
+  document["materials"] = {
+      {{"extensions", {{"KHR_materials_unlit", json::object()}}},
+       {"pbrMetallicRoughness",
+        {{"baseColorFactor", {1, 1, 1, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}}}};
+  document["extensionsUsed"] = {"KHR_materials_unlit", kExtension};
+}
+
+void add_light_field(const LightField& light_field, DocumentBuilder& builder) {
+  const ModelPart part = codec_of(light_field).encode(light_field);
+  json arrays = json::object();
+  for (const auto& [name, bytes] : part.arrays) arrays[name] = builder.add_view(bytes);
+  builder.document["extensions"][kExtension] = {
+      {"version", kExtensionVersion},
+      {"representation", light_field.representation()},
+      {"directionMap", kDirectionMap},
+      {"tangentFrame", kTangentFrame},
+      {"colorSpace", kColourSpace},
+      {"checksum", kChecksumPlaceholder},
+      {"observed", builder.add_view(bytes_of(light_field.observed()))},
+      {"parameters", part.parameters},
+      {"arrays", std::move(arrays)}};
+}
+
+void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
+  core::StagedOutput output(path);
+  std::ofstream file(output.path(), std::ios::binary);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  if (!file) {
+    throw core::Error(core::Error::Kind::run_failed, path, "the model cannot be written",
+                      "check free space and permissions");
+  }
+  output.commit();
+}
+
+}  // namespace
+
+void write_model(const std::filesystem::path& path, const core::Mesh& mesh,
+                 const LightField& light_field) {
+  assert(!mesh.positions.empty() && !mesh.triangles.empty());
+  assert(mesh.positions.size() == light_field.patch_count());
+  DocumentBuilder builder;
+  add_scene(builder.document);
+  add_mesh(mesh, light_field, builder);
+  add_light_field(light_field, builder);
+  builder.document["buffers"] = {{{"byteLength", builder.binary.size()}}};
+  std::optional<std::string> bytes = glb_bytes(builder.document, builder.binary);
+  if (!bytes) {
+    throw core::Error(core::Error::Kind::run_failed, path,
+                      "the model passes the 4 GiB that a glb file can hold",
+                      "use fewer centres, fewer terms or a coarser mesh");
+  }
+  seal(*bytes);
+  write_bytes(path, *bytes);
+}
+
+}  // namespace sheen::fitting

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "fitting/registry.h"
+
+#include "fitting/iwls/iwls_representation.h"
+#include "fitting/iwls/model_codec.h"
+#include "fitting/mean/mean_representation.h"
+#include "fitting/mean/model_codec.h"
+#include "fitting/model_file/model_codec.h"
+
+#include <array>
+#include <stdexcept>
+
+namespace sheen::fitting {
+namespace {
+
+using Neighbours = core::VertexNeighbours;
+
+std::unique_ptr<Representation> make_iwls(const Neighbours& neighbours,
+                                          const RepresentationOptions& options) {
+  return iwls::make_iwls_representation(neighbours, options.iwls, options.threads);
+}
+
+std::unique_ptr<Representation> make_mean(const Neighbours& neighbours,
+                                          const RepresentationOptions& options) {
+  return mean::make_mean_representation(neighbours, options.threads);
+}
+
+struct Entry {
+  const char* name;
+  std::unique_ptr<Representation> (*make)(const Neighbours&, const RepresentationOptions&);
+};
+
+constexpr std::array kRepresentations{Entry{"iwls", make_iwls}, Entry{"mean", make_mean}};
+
+constexpr std::array kCodecs{ModelCodec{"iwls", iwls::encode_model, iwls::decode_model},
+                             ModelCodec{"mean", mean::encode_model, mean::decode_model}};
+
+}  // namespace
+
+std::vector<std::string> representation_names() {
+  std::vector<std::string> names;
+  for (const Entry& entry : kRepresentations) names.emplace_back(entry.name);
+  return names;
+}
+
+std::unique_ptr<Representation> make_representation(const std::string& name,
+                                                    const Neighbours& neighbours,
+                                                    const RepresentationOptions& options) {
+  if (options.threads < 1) {
+    throw std::invalid_argument("threads is " + std::to_string(options.threads) +
+                                ", at least 1 is needed");
+  }
+  std::string known;
+  for (const Entry& entry : kRepresentations) {
+    if (name == entry.name) return entry.make(neighbours, options);
+    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  throw std::invalid_argument("representation \"" + name + "\" is unknown, there are: " + known);
+}
+
+std::span<const ModelCodec> model_codecs() {
+  return kCodecs;
+}
+
+}  // namespace sheen::fitting
