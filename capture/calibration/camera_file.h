@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <filesystem>
-
 #include "core/geometry/camera.h"
+
+#include <filesystem>
 
 namespace sheen::capture {
 

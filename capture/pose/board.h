@@ -14,14 +14,15 @@ namespace sheen::capture {
 struct Board {
   struct Tag {
     double size_m = 0;  ///< side of the black square
-    Eigen::Isometry3d stage_from_tag = Eigen::Isometry3d::Identity();  ///< tag: x right, y up on the print
+    Eigen::Isometry3d stage_from_tag =
+        Eigen::Isometry3d::Identity();  ///< tag: x right, y up on the print
 
     /// Corners of the black square in the stage frame: lower left, lower right, upper right,
     /// upper left of the tag as printed.
     [[nodiscard]] std::array<Eigen::Vector3d, 4> corners_in_stage() const;
   };
-  std::string family;       ///< libapriltag family ("tag36h11") or OpenCV dictionary ("DICT_6X6_250")
-  int border_bits = 1;      ///< width of the black border; 2 for Kalibr's aprilgrid
+  std::string family;   ///< libapriltag family ("tag36h11") or OpenCV dictionary ("DICT_6X6_250")
+  int border_bits = 1;  ///< width of the black border; 2 for Kalibr's aprilgrid
   std::map<int, Tag> tags;  ///< by id
 };
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "capture/pose/board.h"
+#include "capture/pose/trajectory.h"
+#include "capture/source/frame.h"
+#include "core/geometry/camera.h"
+
 #include <Eigen/Geometry>
 
 #include <memory>
 #include <string_view>
 #include <variant>
-
-#include "capture/pose/board.h"
-#include "capture/pose/trajectory.h"
-#include "capture/source/frame.h"
-#include "core/geometry/camera.h"
 
 namespace sheen::capture {
 
@@ -21,9 +21,9 @@ std::string_view name_of(PoseRejection rejection);
 /// Pose of the camera for one frame, with what speaks for it.
 struct FramePose {
   Eigen::Isometry3d camera_from_stage = Eigen::Isometry3d::Identity();
-  int tags = 0;                 ///< tags that carried the estimate; 0 for poses from a file
-  double reprojection_px = 0;   ///< root mean square over the corners that carried it
-  double blur_px = 0;           ///< width of the tags' edges (10-90 %), 0 for poses from a file
+  int tags = 0;                ///< tags that carried the estimate; 0 for poses from a file
+  double reprojection_px = 0;  ///< root mean square over the corners that carried it
+  double blur_px = 0;          ///< width of the tags' edges (10-90 %), 0 for poses from a file
 };
 
 using PoseResult = std::variant<FramePose, PoseRejection>;
@@ -33,6 +33,9 @@ struct PoseGate {
   int min_tags = 2;                ///< fewer known tags are refused, >= 1
   double max_reprojection_px = 2;  ///< joint RMS above this is refused, px, > 0
   double max_blur_px = 6;          ///< wider tag edges are refused, px, > 0
+
+  /// Throws std::invalid_argument naming the option and its allowed values.
+  void check() const;
 };
 
 /// Frame -> pose. One estimator serves one recording in order.

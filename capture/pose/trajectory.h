@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "capture/source/frame.h"
+
 #include <Eigen/Geometry>
 
 #include <filesystem>
@@ -8,12 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "capture/source/frame.h"
-
 namespace sheen::capture {
 
-/// Poses of a recording in TUM form: one line per frame, `stamp tx ty tz qx qy qz qw`, the transform
-/// stage_from_camera in metres. Stamps are frame indices, or seconds when any has a fraction.
+/// Poses of a recording in TUM form: one line per frame, `stamp tx ty tz qx qy qz qw`, the
+/// transform stage_from_camera in metres. Stamps are frame indices, or seconds when any has a
+/// fraction.
 class Trajectory {
  public:
   struct Entry {
@@ -38,6 +39,7 @@ class Trajectory {
 /// Throws core::Error (bad_input): unreadable lines, numbers that are not finite, zero quaternions,
 /// a stamp twice.
 Trajectory read_trajectory(const std::filesystem::path& path);
-void write_trajectory(const std::filesystem::path& path, const std::vector<Trajectory::Entry>& entries);
+void write_trajectory(const std::filesystem::path& path,
+                      const std::vector<Trajectory::Entry>& entries);
 
 }  // namespace sheen::capture

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "capture/source/frame_source.h"
+#include "core/geometry/camera.h"
+
 #include <Eigen/Geometry>
 
 #include <filesystem>
@@ -8,9 +11,6 @@
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "capture/source/frame_source.h"
-#include "core/geometry/camera.h"
 
 namespace sheen::capture {
 
@@ -29,8 +29,9 @@ struct Session {
   std::vector<std::string> warnings;  ///< unknown keys, one line each
 };
 
-/// Reads and checks session.json and camera.yaml. Throws core::Error (bad_input) with one clear line:
-/// missing file, later major version, path that leaves the folder, transform that is not rigid.
+/// Reads and checks session.json and camera.yaml. Throws core::Error (bad_input) with one clear
+/// line: missing file, later major version, path that leaves the folder, transform that is not
+/// rigid.
 Session open_session(const std::filesystem::path& folder);
 
 /// Frames [start, end) of the session in recorded order; `index` counts from the recording's first

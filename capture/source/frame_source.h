@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
-
 #include "capture/source/frame.h"
+
+#include <optional>
 
 namespace sheen::capture {
 

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+#include "capture/pose/board.h"
+
+#include "capture/files/text_file.h"
+#include "capture/pose/tag_family.h"
+#include "core/diagnostics/error.h"
+#include "core/files/staged_output.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <cmath>
+#include <fstream>
+#include <iomanip>
+#include <locale>
+
+namespace sheen::capture {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
+constexpr double kMaxExtentM = 1e3;
+constexpr const char* kRemedy = "see docs/formats.md for the two layouts of board.yaml";
+
+/// board.yaml with errors that name the file.
+class BoardReader {
+ public:
+  explicit BoardReader(const std::filesystem::path& path)
+      : path_(path), root_(YAML::Load(read_text_file(path, kMaxBytes))) {}
+
+  [[noreturn]] void fail(const std::string& fault) const {
+    throw core::bad_input(path_, fault, kRemedy);
+  }
+
+  [[nodiscard]] const YAML::Node& root() const { return root_; }
+
+  /// A finite number within what a board can hold, or `fallback` where the key is missing.
+  [[nodiscard]] double number(const YAML::Node& node, const char* key,
+                              std::optional<double> fallback = std::nullopt) const {
+    const YAML::Node value = node[key];
+    if (!value && fallback) return *fallback;
+    double result = 0;
+    if (!value || !value.IsScalar() || !YAML::convert<double>::decode(value, result) ||
+        !(std::abs(result) <= kMaxExtentM)) {
+      fail(std::string(key) + " is missing or no usable number");
+    }
+    return result;
+  }
+
+  [[nodiscard]] int whole_number(const YAML::Node& node, const char* key, int least,
+                                 std::optional<int> fallback = std::nullopt) const {
+    const YAML::Node value = node[key];
+    if (!value && fallback) return *fallback;
+    int result = 0;
+    if (!value || !value.IsScalar() || !YAML::convert<int>::decode(value, result) ||
+        result < least) {
+      fail(std::string(key) + " is missing or not a whole number from " + std::to_string(least));
+    }
+    return result;
+  }
+
+  [[nodiscard]] double size(const YAML::Node& node, const char* key) const {
+    const double value = number(node, key);
+    if (!(value > 0)) fail(std::string(key) + " is not positive");
+    return value;
+  }
+
+  [[nodiscard]] std::string text(const char* key, const std::string& fallback) const {
+    const YAML::Node value = root_[key];
+    if (!value) return fallback;
+    if (!value.IsScalar()) fail(std::string(key) + " is no text");
+    return value.Scalar();
+  }
+
+  void add(Board& board, int id, const Board::Tag& tag) const {
+    if (!board.tags.emplace(id, tag).second) {
+      fail("tag " + std::to_string(id) + " occurs twice");
+    }
+  }
+
+ private:
+  std::filesystem::path path_;
+  YAML::Node root_;
+};
+
+TagFamily known_family(const BoardReader& reader, const Board& board) {
+  const auto family = find_tag_family(board.family, board.border_bits);
+  if (!family) {
+    reader.fail("no detector knows the tag family \"" + board.family + "\" with a border of " +
+                std::to_string(board.border_bits) + " bits");
+  }
+  return *family;
+}
+
+Board::Tag read_tag(const BoardReader& reader, const YAML::Node& node) {
+  Board::Tag tag;
+  tag.size_m = reader.size(node, "size");
+  tag.stage_from_tag.translation() = Eigen::Vector3d(
+      reader.number(node, "x", 0), reader.number(node, "y", 0), reader.number(node, "z", 0));
+  const Eigen::Quaterniond rotation(reader.number(node, "qw", 1), reader.number(node, "qx", 0),
+                                    reader.number(node, "qy", 0), reader.number(node, "qz", 0));
+  if (!(std::abs(rotation.norm() - 1) < 0.05)) reader.fail("a tag's quaternion has no unit length");
+  tag.stage_from_tag.linear() = rotation.normalized().toRotationMatrix();
+  return tag;
+}
+
+/// apriltag_ros: every bundle is a list of tags in the common stage frame.
+Board read_bundles(const BoardReader& reader) {
+  Board board;
+  board.family = reader.text("tag_family", "tag36h11");
+  board.border_bits = reader.whole_number(reader.root(), "border_bits", 1, 1);
+  const int codes = code_count(known_family(reader, board));
+  const YAML::Node bundles = reader.root()["tag_bundles"];
+  if (!bundles.IsSequence()) reader.fail("tag_bundles is no list");
+  for (const YAML::Node& bundle : bundles) {
+    const YAML::Node layout = bundle.IsMap() ? bundle["layout"] : YAML::Node();
+    if (!layout.IsSequence()) reader.fail("a bundle has no layout");
+    for (const YAML::Node& entry : layout) {
+      if (!entry.IsMap()) reader.fail("a layout holds something that is no tag");
+      const int id = reader.whole_number(entry, "id", 0);
+      if (id >= codes) {
+        reader.fail("tag " + std::to_string(id) + " is not in the family " + board.family);
+      }
+      reader.add(board, id, read_tag(reader, entry));
+    }
+  }
+  return board;
+}
+
+/// Kalibr's grid, in Kalibr's own frame: origin at the lower left corner of tag 0, x along the
+/// rows, y up the columns. Kalibr prints the codes as libapriltag does (OpenCV: turned by 180
+/// degrees).
+Board read_aprilgrid(const BoardReader& reader) {
+  Board board;
+  board.family = reader.text("tag_family", "tag36h11");
+  board.border_bits = reader.whole_number(reader.root(), "border_bits", 1, 2);
+  const int codes = code_count(known_family(reader, board));
+  const int columns = reader.whole_number(reader.root(), "tagCols", 1);
+  const int rows = reader.whole_number(reader.root(), "tagRows", 1);
+  const double size_m = reader.size(reader.root(), "tagSize");
+  const double spacing = reader.number(reader.root(), "tagSpacing");
+  if (!(spacing >= 0)) reader.fail("tagSpacing is negative");
+  const int first_id = reader.whole_number(reader.root(), "startId", 0, 0);
+  if (columns > codes || rows > codes || first_id > codes || columns * rows + first_id > codes) {
+    reader.fail("the grid has more tags than the family " + board.family + " has codes");
+  }
+  const double pitch_m = size_m * (1 + spacing);
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      Board::Tag tag;
+      tag.size_m = size_m;
+      tag.stage_from_tag.translation() =
+          Eigen::Vector3d(column * pitch_m + size_m / 2, row * pitch_m + size_m / 2, 0);
+      reader.add(board, first_id + row * columns + column, tag);
+    }
+  }
+  return board;
+}
+
+}  // namespace
+
+std::array<Eigen::Vector3d, 4> Board::Tag::corners_in_stage() const {
+  const double h = size_m / 2;
+  return {stage_from_tag * Eigen::Vector3d(-h, -h, 0), stage_from_tag * Eigen::Vector3d(h, -h, 0),
+          stage_from_tag * Eigen::Vector3d(h, h, 0), stage_from_tag * Eigen::Vector3d(-h, h, 0)};
+}
+
+Board read_board(const std::filesystem::path& path) {
+  try {
+    const BoardReader reader(path);
+    Board board;
+    if (!reader.root().IsMap()) reader.fail("is no board");
+    if (reader.root()["tag_bundles"]) {
+      board = read_bundles(reader);
+    } else if (reader.text("target_type", "") == "aprilgrid") {
+      board = read_aprilgrid(reader);
+    } else {
+      reader.fail("has neither tag_bundles nor target_type: 'aprilgrid'");
+    }
+    if (board.tags.empty()) reader.fail("holds no tag");
+    return board;
+  } catch (const YAML::Exception& error) {
+    throw core::bad_input(
+        path, "is no valid YAML (line " + std::to_string(error.mark.line + 1) + ")", kRemedy);
+  }
+}
+
+void write_board(const std::filesystem::path& path, const Board& board) {
+  core::StagedOutput output(path);
+  std::ofstream out(output.path());
+  out.imbue(std::locale::classic());
+  out << std::setprecision(10) << "tag_family: " << board.family << '\n';
+  if (board.border_bits != 1) out << "border_bits: " << board.border_bits << '\n';
+  out << "tag_bundles:\n  - name: stage\n    layout:\n";
+  for (const auto& [id, tag] : board.tags) {
+    const Eigen::Vector3d t = tag.stage_from_tag.translation();
+    const Eigen::Quaterniond q(tag.stage_from_tag.linear());
+    out << "      - {id: " << id << ", size: " << tag.size_m << ", x: " << t.x() << ", y: " << t.y()
+        << ", z: " << t.z() << ", qw: " << q.w() << ", qx: " << q.x() << ", qy: " << q.y()
+        << ", qz: " << q.z() << "}\n";
+  }
+  out.close();
+  if (!out) {
+    throw core::Error(core::Error::Kind::run_failed, path, "cannot be written", "check the disk");
+  }
+  output.commit();
+}
+
+}  // namespace sheen::capture

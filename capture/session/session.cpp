@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: MIT
+#include "capture/session/session.h"
+
+#include "capture/calibration/camera_file.h"
+#include "capture/files/text_file.h"
+#include "capture/source/image_folder_source.h"
+#include "capture/source/video_source.h"
+#include "core/diagnostics/error.h"
+
+#include <Eigen/SVD>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <set>
+
+namespace sheen::capture {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+constexpr const char* kRemedy = "see docs/formats.md for session.json";
+
+/// session.json with errors that name the file and warnings for what is not understood.
+class SessionReader {
+ public:
+  explicit SessionReader(const std::filesystem::path& folder)
+      : folder_(folder), path_(folder / "session.json") {
+    root_ = json::parse(read_text_file(path_, kMaxBytes), nullptr, false);
+    if (!root_.is_object()) fail("is no JSON object");
+  }
+
+  [[noreturn]] void fail(const std::string& fault, const std::string& remedy = kRemedy) const {
+    throw core::bad_input(path_, fault, remedy);
+  }
+
+  [[nodiscard]] const json& root() const { return root_; }
+
+  [[nodiscard]] const json& object(const char* key) const {
+    const auto found = root_.find(key);
+    if (found == root_.end() || !found->is_object())
+      fail("\"" + std::string(key) + "\" is missing");
+    return *found;
+  }
+
+  [[nodiscard]] std::optional<std::string> text(const json& parent, const char* key) const {
+    const auto found = parent.find(key);
+    if (found == parent.end()) return std::nullopt;
+    if (!found->is_string() || found->get_ref<const std::string&>().empty()) {
+      fail("\"" + std::string(key) + "\" is no text");
+    }
+    return found->get<std::string>();
+  }
+
+  /// A path as written, after the check that it stays within the folder.
+  [[nodiscard]] std::optional<std::string> inner_path(const json& parent, const char* key) const {
+    const auto written = text(parent, key);
+    if (!written) return std::nullopt;
+    const std::filesystem::path relative(*written);
+    const auto normal = relative.lexically_normal();
+    if (relative.is_absolute() || normal.begin() == normal.end() || *normal.begin() == ".." ||
+        written->find('\0') != std::string::npos) {
+      fail("\"" + std::string(key) + "\" leaves the session folder",
+           "use a path relative to and within the folder");
+    }
+    return written;
+  }
+
+  [[nodiscard]] std::optional<std::filesystem::path> inner_file(const json& parent,
+                                                                const char* key) const {
+    const auto written = inner_path(parent, key);
+    if (!written) return std::nullopt;
+    const auto path = folder_ / *written;
+    std::error_code no_throw;
+    if (!std::filesystem::is_regular_file(path, no_throw)) {
+      throw core::bad_input(path, "there is no such file, though session.json names it",
+                            "add it or correct session.json");
+    }
+    return path;
+  }
+
+  void warn_unknown(const json& parent, const std::set<std::string>& known,
+                    const std::string& where) {
+    for (const auto& [key, value] : parent.items()) {
+      if (known.contains(key)) continue;
+      warnings.push_back(path_.string() + ": unknown key " +
+                         json(where + key).dump(-1, ' ', true, json::error_handler_t::replace) +
+                         " is ignored");
+    }
+  }
+
+  std::vector<std::string> warnings;
+
+ private:
+  std::filesystem::path folder_, path_;
+  json root_;
+};
+
+void check_format(const SessionReader& reader) {
+  if (reader.text(reader.root(), "format") != "sheen-session") {
+    reader.fail("\"format\" is not \"sheen-session\"");
+  }
+  const auto version = reader.root().find("version");
+  if (version == reader.root().end() || !version->is_number())
+    reader.fail("\"version\" is missing");
+  const double number = version->get<double>();
+  if (!(number >= 1)) reader.fail("\"version\" is not 1");
+  if (number >= 2) {
+    reader.fail("has version " + version->dump() + ", this program reads version 1",
+                "use a newer sheen");
+  }
+}
+
+void read_frames(SessionReader& reader, Session& session) {
+  const json& frames = reader.object("frames");
+  reader.warn_unknown(frames, {"video", "images", "fps"}, "frames.");
+  if (frames.contains("video") == frames.contains("images")) {
+    reader.fail("\"frames\" must hold exactly one of \"video\" and \"images\"");
+  }
+  session.video = reader.inner_file(frames, "video");
+  session.image_pattern = reader.inner_path(frames, "images");
+  if (session.image_pattern && !NumberedName::parse(*session.image_pattern)) {
+    reader.fail("\"images\" is no pattern with one number", "write it like images/%04d.png");
+  }
+  if (const auto fps = frames.find("fps"); fps != frames.end()) {
+    session.fps = fps->is_number() ? fps->get<double>() : 0;
+    if (!std::isfinite(*session.fps) || !(*session.fps > 0) || *session.fps > 1e5) {
+      reader.fail("\"fps\" is no positive number");
+    }
+  }
+}
+
+/// What a matrix close to a multiple of a rotation or reflection is; empty for a rotation.
+std::string describe_fault(const Eigen::Matrix3d& A) {
+  constexpr double tolerance = 1e-3;
+  const double scale = std::cbrt(std::abs(A.determinant()));
+  const Eigen::Matrix3d gram = A.transpose() * A;
+  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+  if (!(scale > 0) || !((gram / (scale * scale) - identity).cwiseAbs().maxCoeff() < tolerance)) {
+    return "shears or stretches unevenly";
+  }
+  if (A.determinant() < 0) return "mirrors";
+  if (!((gram - identity).cwiseAbs().maxCoeff() < tolerance)) {
+    return "scales by " + std::to_string(scale);
+  }
+  return {};
+}
+
+Eigen::Isometry3d read_transform(const SessionReader& reader, const json& object) {
+  const auto found = object.find("T_stage_object");
+  if (found == object.end() || !found->is_array() || found->size() != 16) {
+    reader.fail("\"T_stage_object\" is no list of 16 numbers");
+  }
+  Eigen::Matrix4d T;
+  for (Eigen::Index i = 0; i < 16; ++i) {
+    const json& entry = (*found)[static_cast<std::size_t>(i)];
+    T(i / 4, i % 4) = entry.is_number() ? entry.get<double>() : std::nan("");
+  }
+  if (!T.allFinite()) reader.fail("\"T_stage_object\" holds something that is no finite number");
+  if ((T.row(3) - Eigen::RowVector4d(0, 0, 0, 1)).cwiseAbs().maxCoeff() > 1e-9) {
+    reader.fail("the last row of \"T_stage_object\" is not 0 0 0 1",
+                "write the 16 numbers row by row");
+  }
+  if (const std::string fault = describe_fault(T.topLeftCorner<3, 3>()); !fault.empty()) {
+    reader.fail("\"T_stage_object\" " + fault,
+                "a rotation and a translation are allowed; scale the mesh itself to metres");
+  }
+  if (T.topRightCorner<3, 1>().cwiseAbs().maxCoeff() > 1e6) {
+    reader.fail("\"T_stage_object\" moves the object out of reach", "use metres");
+  }
+  // Replace the rounded rotation of the file by the nearest exact one.
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(T.topLeftCorner<3, 3>(),
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();
+  transform.linear() = svd.matrixU() * svd.matrixV().transpose();
+  transform.translation() = T.topRightCorner<3, 1>();
+  return transform;
+}
+
+void read_object(SessionReader& reader, Session& session) {
+  const json& object = reader.object("object");
+  reader.warn_unknown(object, {"mesh", "T_stage_object"}, "object.");
+  const auto mesh = reader.inner_file(object, "mesh");
+  if (!mesh) reader.fail("\"object\" names no \"mesh\"");
+  session.mesh = *mesh;
+  session.stage_from_object = read_transform(reader, object);
+}
+
+}  // namespace
+
+Session open_session(const std::filesystem::path& folder) {
+  std::error_code no_throw;
+  if (!std::filesystem::is_directory(folder, no_throw)) {
+    throw core::bad_input(folder, "there is no such session folder", "check the path");
+  }
+  SessionReader reader(folder);
+  check_format(reader);
+  reader.warn_unknown(reader.root(),
+                      {"format", "version", "frames", "camera", "board", "poses", "object"}, "");
+
+  Session session;
+  session.folder = folder;
+  read_frames(reader, session);
+  session.board = reader.inner_file(reader.root(), "board");
+  session.poses = reader.inner_file(reader.root(), "poses");
+  if (!session.board && !session.poses) {
+    reader.fail("names neither \"board\" nor \"poses\"",
+                "add the tag board (board.yaml) or the camera poses (poses.txt)");
+  }
+  read_object(reader, session);
+  const auto camera = reader.inner_file(reader.root(), "camera");
+  if (!camera) reader.fail("names no \"camera\"");
+  session.camera = read_camera(*camera);
+  session.warnings = std::move(reader.warnings);
+  return session;
+}
+
+std::unique_ptr<FrameSource> open_frames(const Session& session, int start,
+                                         std::optional<int> end) {
+  const PictureSize size{session.camera.width_px(), session.camera.height_px()};
+  const FrameRange range{start, end};
+  if (session.video) return open_video(*session.video, size, range, session.fps);
+  return open_image_folder(session.folder, session.image_pattern.value_or(""), size, range,
+                           session.fps);
+}
+
+}  // namespace sheen::capture

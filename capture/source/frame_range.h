@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+namespace sheen::capture {
+
+/// What part of a recording is wanted, counted in frames from its first.
+struct FrameRange {
+  int start = 0;           ///< first wanted frame, >= 0
+  std::optional<int> end;  ///< one past the last; without a value to the end of the recording
+};
+
+/// What every picture of a recording must look like.
+struct PictureSize {
+  int width_px = 0;
+  int height_px = 0;
+};
+
+}  // namespace sheen::capture

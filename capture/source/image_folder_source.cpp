@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+#include "capture/source/image_folder_source.h"
+
+#include "capture/source/picture_check.h"
+#include "core/diagnostics/error.h"
+
+#include <opencv2/imgcodecs.hpp>
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+#include <utility>
+
+namespace sheen::capture {
+namespace {
+
+constexpr std::size_t kMaxDigits = 9;
+
+/// Numbers of all pictures that the pattern names.
+std::set<int> find_numbers(const std::filesystem::path& folder, const NumberedName& name) {
+  std::set<int> numbers;
+  std::error_code fault;
+  for (std::filesystem::directory_iterator entry(folder, fault), last; !fault && entry != last;
+       entry.increment(fault)) {
+    if (const auto number = name.number_in(entry->path().filename().string())) {
+      numbers.insert(*number);
+    }
+  }
+  return numbers;
+}
+
+class ImageFolderSource : public FrameSource {
+ public:
+  ImageFolderSource(std::filesystem::path session_folder, NumberedName name, PictureSize size,
+                    FrameRange range, double fps)
+      : session_folder_(std::move(session_folder)),
+        name_(std::move(name)),
+        size_(size),
+        range_(range),
+        fps_(fps) {
+    count_pictures();
+    check_range(session_folder_ / name_.folder(), range_, count_);
+    next_ = range_.start;
+    end_ = std::min(count_, range_.end.value_or(count_));
+    waiting_ = read();
+  }
+
+  std::optional<Frame> next() override {
+    auto frame = std::exchange(waiting_, std::nullopt);
+    return frame ? frame : read();
+  }
+
+  [[nodiscard]] std::optional<int> frame_count() const override { return end_ - range_.start; }
+
+ private:
+  void count_pictures() {
+    const auto folder = session_folder_ / name_.folder();
+    const std::set<int> numbers = find_numbers(folder, name_);
+    if (numbers.empty() || *numbers.begin() > 1) {
+      throw core::bad_input(session_folder_ / name_.at(0), "there is no first picture",
+                            "number the pictures from 0 or 1");
+    }
+    first_ = *numbers.begin();
+    count_ = static_cast<int>(numbers.size());
+    if (*numbers.rbegin() - first_ + 1 == count_) return;
+    int missing = first_;
+    while (numbers.contains(missing)) ++missing;
+    throw core::bad_input(session_folder_ / name_.at(missing), "this picture is missing",
+                          "number the pictures without gaps");
+  }
+
+  std::optional<Frame> read() {
+    if (next_ >= end_) return std::nullopt;
+    const auto path = session_folder_ / name_.at(first_ + next_);
+    cv::Mat image;
+    try {
+      image = cv::imread(path.string(), cv::IMREAD_COLOR);
+    } catch (const cv::Exception&) {
+      image.release();  // OpenCV throws for absurd sizes and returns nothing for other faults
+    }
+    if (image.empty()) {
+      throw core::bad_input(path, "cannot be read as a picture", "check that it is complete");
+    }
+    check_picture_size(path, image, size_);
+    const int index = next_++;
+    return Frame{std::move(image), index / fps_, index};
+  }
+
+  std::filesystem::path session_folder_;
+  NumberedName name_;
+  PictureSize size_;
+  FrameRange range_;
+  double fps_;
+  int first_ = 0;  // number of the first picture
+  int count_ = 0;
+  int next_ = 0;
+  int end_ = 0;
+  std::optional<Frame> waiting_;
+};
+
+}  // namespace
+
+std::optional<NumberedName> NumberedName::parse(const std::string& pattern) {
+  NumberedName name;
+  const std::size_t slash = pattern.rfind('/');
+  const std::size_t begin = slash == std::string::npos ? 0 : slash + 1;
+  name.folder_ = pattern.substr(0, begin);
+  const std::string file = pattern.substr(begin);
+  const std::size_t percent = file.find('%');
+  const std::size_t letter = file.find('d', percent);
+  if (percent == std::string::npos || letter == std::string::npos) return std::nullopt;
+
+  // Between them only a width such as 04.
+  const std::string width = file.substr(percent + 1, letter - percent - 1);
+  if (!std::all_of(width.begin(), width.end(), [](char c) { return c >= '0' && c <= '9'; }) ||
+      width.size() > 2) {
+    return std::nullopt;
+  }
+  name.digits_ = width.empty() ? 0 : static_cast<std::size_t>(std::stoi(width));
+  name.prefix_ = file.substr(0, percent);
+  name.suffix_ = file.substr(letter + 1);
+  const bool has_other = (name.folder_ + name.suffix_).find('%') != std::string::npos;
+  if (has_other || name.digits_ > kMaxDigits) return std::nullopt;
+  return name;
+}
+
+std::string NumberedName::at(int number) const {
+  const std::string digits = std::to_string(number);
+  const std::string zeros(digits_ - std::min(digits_, digits.size()), '0');
+  return folder_ + prefix_ + zeros + digits + suffix_;
+}
+
+std::optional<int> NumberedName::number_in(const std::string& file_name) const {
+  if (file_name.size() <= prefix_.size() + suffix_.size() || !file_name.starts_with(prefix_) ||
+      !file_name.ends_with(suffix_)) {
+    return std::nullopt;
+  }
+  const char* begin = file_name.data() + prefix_.size();
+  const char* end = file_name.data() + file_name.size() - suffix_.size();
+  int number = 0;
+  const auto [stop, status] = std::from_chars(begin, end, number);
+  // Writing it again tells a name of this form from 7.png among 0007.png.
+  if (status != std::errc() || stop != end || at(number) != folder_ + file_name)
+    return std::nullopt;
+  return number;
+}
+
+std::unique_ptr<FrameSource> open_image_folder(const std::filesystem::path& session_folder,
+                                               const std::string& pattern, const PictureSize& size,
+                                               const FrameRange& range, std::optional<double> fps) {
+  const auto name = NumberedName::parse(pattern);
+  if (!name) {
+    throw core::bad_input(session_folder / pattern, "is no pattern with one number",
+                          "write it like images/%04d.png");
+  }
+  return std::make_unique<ImageFolderSource>(session_folder, *name, size, range, fps.value_or(1));
+}
+
+}  // namespace sheen::capture

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/source/frame_range.h"
+
+#include <opencv2/core/mat.hpp>
+
+#include <filesystem>
+
+namespace sheen::capture {
+
+/// Throws core::Error (bad_input) naming both sizes when `image` is not of the camera's size.
+void check_picture_size(const std::filesystem::path& subject, const cv::Mat& image,
+                        const PictureSize& expected);
+
+/// Throws core::Error (bad_input) for a range that no recording can satisfy: negative, empty, or
+/// starting past the last of `frames` where that number is known.
+void check_range(const std::filesystem::path& subject, const FrameRange& range,
+                 std::optional<int> frames);
+
+}  // namespace sheen::capture
