@@ -13,8 +13,10 @@ namespace {
 
 /// How far the mesh may rise in front of one of its own vertices, in steps of one pixel along the
 /// surface. The farthest of four texels on a plane is never nearer than a point between them; the
-/// rest is for creases and for surfaces that curve towards the camera.
-constexpr float kBiasSteps = 0.5f;
+/// rest is for creases and for surfaces that curve towards the camera. Measured on a bunny at
+/// 1280x720, of all candidates: 0.1 step hides 0.08 % wrongly and shows 0.53 % wrongly, 0.25 step
+/// 0.05 % and 0.54 %, 0.5 step 0.02 % and 0.55 %.
+constexpr float kBiasSteps = 0.25f;
 constexpr float kRelativeBias = 1e-5f;  // rounding of depth values
 constexpr float kSteepest = 5.0f;       // tangent of the angle between normal and view, at most
 
