@@ -10,7 +10,7 @@ Producer::Producer(Parts parts)
 
 std::optional<FrameReport> Producer::step() {
   // Close the books of this frame whatever happens to it.
-  const auto frame_timing = timer_.measure_frame();
+  auto frame_timing = timer_.measure_frame();
 
   // Read the next picture.
   std::optional<capture::Frame> frame;
@@ -18,7 +18,10 @@ std::optional<FrameReport> Producer::step() {
     const auto timing = timer_.measure("decode");
     frame = parts_.frames->next();
   }
-  if (!frame) return std::nullopt;
+  if (!frame) {
+    frame_timing.discard();
+    return std::nullopt;
+  }
   ++statistics_.frames_read;
 
   // Find the camera; fit the frame unless it is held out.
@@ -30,8 +33,7 @@ std::optional<FrameReport> Producer::step() {
       statistics_.held_out.push_back(posed);
     } else {
       observe(*frame, pose->camera_from_stage);
-      const auto timing = timer_.measure("fit");
-      report.update = parts_.representation.absorb(batch_);
+      report.update = fit();
       ++statistics_.frames_fitted;
     }
   }
@@ -70,6 +72,17 @@ void Producer::observe(const capture::Frame& frame, const Eigen::Isometry3d& cam
     const auto timing = timer_.measure("baseline");
     parts_.baseline->absorb(batch_);
   }
+}
+
+fitting::ModelUpdate Producer::fit() {
+  const fitting::ModelUpdate* update = nullptr;
+  {
+    const auto timing = timer_.measure("fit");
+    update = &parts_.representation.absorb(batch_);
+  }
+  // The watcher reads its copy while the next frame is fitted.
+  const auto timing = timer_.measure("update");
+  return *update;
 }
 
 }  // namespace sheen::app

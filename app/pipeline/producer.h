@@ -82,6 +82,8 @@ class Producer {
   std::optional<capture::FramePose> pose_of(const capture::Frame& frame);
   void observe(const capture::Frame& frame, const Eigen::Isometry3d& camera_from_stage);
 
+  fitting::ModelUpdate fit();
+
   Parts parts_;
   std::vector<core::TangentFrame> tangent_frames_;
   core::VertexView view_;
