@@ -6,6 +6,7 @@
 #include "capture/pose/trajectory.h"
 #include "capture/synthetic/camera_path.h"
 #include "capture/synthetic/hash.h"
+#include "capture/synthetic/motion_jpeg_file.h"
 #include "capture/synthetic/photograph.h"
 #include "capture/synthetic/torus_knot.h"
 #include "core/diagnostics/error.h"
@@ -15,7 +16,6 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <opencv2/videoio.hpp>
 
 #include <algorithm>
 #include <array>
@@ -30,7 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kFps = 30;
+constexpr int kFps = 30;
 constexpr int kHeldOutSamplesFactor = 4;
 constexpr float kKnotLift = 0.01f;
 constexpr double kMinRadius = 0.01;
@@ -111,24 +111,17 @@ void write_recording(const fs::path& folder, const Scene& scene, const core::Cam
   write_board(folder / "board.yaml", scene.board());
   write_trajectory(folder / "truth_poses.txt", poses);
 
-  // OpenCV's own writer: the only one that honours the quality on every machine.
-  const fs::path video = folder / "frames.avi";
-  cv::VideoWriter writer(video.string(), cv::CAP_OPENCV_MJPEG,
-                         cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), kFps,
-                         {options.width_px, options.height_px});
-  if (!writer.isOpened()) throw write_failure(video);
-  writer.set(cv::VIDEOWRITER_PROP_QUALITY, options.jpeg_quality);
-
+  MotionJpegFile video(folder / "frames.avi", {options.width_px, options.height_px}, kFps,
+                       options.jpeg_quality);
   const Photographer photographer(camera);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const std::uint32_t seed = hash(options.seed, static_cast<std::uint32_t>(i));
     const Exposure exposure = photographer.expose(scene, poses[i].stage_from_camera,
                                                   options.samples, seed, options.threads);
-    writer.write(develop(exposure.light, SensorNoise{}, hash(seed, 1U)));
+    video.append(develop(exposure.light, SensorNoise{}, hash(seed, 1U)));
     counter.advance();
   }
-  writer.release();
-  if (std::error_code error; fs::file_size(video, error) == 0 || error) throw write_failure(video);
+  video.close();
 }
 
 void write_held_out(const fs::path& folder, const Scene& scene, const core::CameraModel& camera,

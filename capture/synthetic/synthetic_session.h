@@ -21,7 +21,7 @@ struct SyntheticOptions {
   int height_px = 360;                        ///< [120, 4096]
   int frames = 120;                           ///< of the recording, [2, 100000]
   int held_out = 12;                          ///< views apart from it, [0, 10000]
-  int samples = 4;                            ///< rays per pixel of a frame, [1, 256]
+  int samples = 8;                            ///< rays per pixel of a frame, [1, 256]
   int jpeg_quality = 93;                      ///< of the video, [1, 100]
   std::uint32_t seed = 1;                     ///< of path, tremor and noise
   int threads = 1;                            ///< >= 1
