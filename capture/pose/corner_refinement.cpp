@@ -70,6 +70,47 @@ std::optional<SideOffset> fit_line(const EdgePositions& positions) {
   return SideOffset{line[0], line[1]};
 }
 
+/// Half length of the profiles across a side. The first round must catch corners that are a few
+/// pixels off; later ones reach just over the blurred edge, since more only adds noise. Two thirds
+/// of a module reach neither the code inside nor the next tag outside.
+double half_length(const cv::Mat& grey, const TagSide& side, double module_px, bool is_first) {
+  constexpr int probes = 5;
+  const double longest_px = std::clamp(0.65 * module_px, 1.5, 6.0);
+  if (is_first) return longest_px;
+  double sum_px = 0;
+  int count = 0;
+  for (int i = 0; i < probes; ++i) {
+    const auto profile =
+        EdgeProfile::sample(grey, side.point(0.2 + 0.15 * i), side.outward(), longest_px);
+    const auto width_px = profile ? profile->rise_width_px() : std::nullopt;
+    if (!width_px) continue;
+    sum_px += *width_px;
+    ++count;
+  }
+  // 1.25 times the rise is 3.2 standard deviations of a Gaussian blur: the step is over there.
+  return count == 0 ? longest_px : std::clamp(1.25 * sum_px / count, 1.5, longest_px);
+}
+
+std::optional<SideOffset> locate_side(const cv::Mat& grey, const TagSide& side, double module_px,
+                                      bool is_first) {
+  const double half_length_px = half_length(grey, side, module_px, is_first);
+  const int wanted = std::clamp(static_cast<int>(side.length_px() / 1.5), 8, kMaxPositions);
+  const EdgePositions positions = measure(grey, side, half_length_px, wanted);
+  if (2 * positions.count < wanted) return std::nullopt;
+  return fit_line(positions);
+}
+
+/// Where two sides meet, against the corner between them. No value for sides nearly parallel.
+std::optional<Eigen::Vector2d> intersect(const Eigen::Vector2d& outward_before,
+                                         double offset_before, const Eigen::Vector2d& outward_after,
+                                         double offset_after) {
+  constexpr double min_sine = 0.1;
+  Eigen::Matrix2d A;
+  A << outward_before.transpose(), outward_after.transpose();
+  if (std::abs(A.determinant()) < min_sine) return std::nullopt;
+  return Eigen::Vector2d(A.inverse() * Eigen::Vector2d(offset_before, offset_after));
+}
+
 }  // namespace
 
 void refine_corners(const cv::Mat& grey, const core::CameraModel& camera, int modules,
@@ -82,30 +123,23 @@ void refine_corners(const cv::Mat& grey, const core::CameraModel& camera, int mo
     // Measure each side against the line through its present corners.
     std::array<std::optional<SideOffset>, 4> offsets;
     std::array<Eigen::Vector2d, 4> outward;
-    double shortest_px = 1e9;
+    double smallest_module_px = 1e9;
     for (std::size_t s = 0; s < 4; ++s) {
       const TagSide side(camera, corners_px[s], corners_px[(s + 1) % 4], centre);
-      shortest_px = std::min(shortest_px, side.length_px());
-      // Two thirds of a module reach neither the code inside nor the next tag outside.
-      const double module_px = (corners_px[(s + 2) % 4] - corners_px[(s + 1) % 4]).norm() / modules;
-      const double half_length_px = std::clamp(0.65 * module_px, 1.5, 6.0);
-      const int wanted = std::clamp(static_cast<int>(side.length_px() / 1.5), 8, kMaxPositions);
-      const EdgePositions positions = measure(grey, side, half_length_px, wanted);
+      const double module_px = 2 * side.outward().dot(side.point(0.5) - centre) / modules;
       outward[s] = side.outward();
-      if (2 * positions.count >= wanted) offsets[s] = fit_line(positions);
+      offsets[s] = locate_side(grey, side, module_px, round == 0);
+      smallest_module_px = std::min(smallest_module_px, module_px);
     }
 
     // Move each corner to where its two sides meet.
-    const double max_move_px = std::max(1.5, 0.6 * shortest_px / modules);
+    const double max_move_px = std::max(1.5, smallest_module_px);
     for (std::size_t c = 0; c < 4; ++c) {
       const std::size_t before = (c + 3) % 4;
       if (!offsets[before] || !offsets[c]) continue;
-      Eigen::Matrix2d A;
-      A << outward[before].transpose(), outward[c].transpose();
-      if (std::abs(A.determinant()) < 0.1) continue;  // sides within 6 degrees of each other
-      const Eigen::Vector2d move =
-          A.inverse() * Eigen::Vector2d(offsets[before]->at_end, offsets[c]->at_begin);
-      if (move.norm() <= max_move_px) corners_px[c] += move;
+      const auto move =
+          intersect(outward[before], offsets[before]->at_end, outward[c], offsets[c]->at_begin);
+      if (move && move->norm() <= max_move_px) corners_px[c] += *move;
     }
   }
 }

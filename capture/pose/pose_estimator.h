@@ -32,7 +32,7 @@ using PoseResult = std::variant<FramePose, PoseRejection>;
 struct PoseGate {
   int min_tags = 2;                ///< fewer known tags are refused, >= 1
   double max_reprojection_px = 2;  ///< joint RMS above this is refused, px, > 0
-  double max_blur_px = 6;          ///< wider tag edges are refused, px, > 0
+  double max_blur_px = 4;          ///< wider tag edges are refused, px, > 0
 
   /// Throws std::invalid_argument naming the option and its allowed values.
   void check() const;

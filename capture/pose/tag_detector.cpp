@@ -8,7 +8,7 @@
 
 #include <algorithm>
 #include <cassert>
-#include <numeric>
+#include <cmath>
 
 namespace sheen::capture {
 
@@ -63,9 +63,8 @@ class TagDetector::Aruco : public Implementation {
         codes_(cv::aruco::getPredefinedDictionary(family.aruco_dictionary_id)),
         parameters_(cv::aruco::DetectorParameters::create()) {
     parameters_->markerBorderBits = (family.modules - codes_->markerSize) / 2;
-    parameters_->cornerRefinementMethod = cv::aruco::CORNER_REFINE_SUBPIX;
-    parameters_->cornerRefinementMaxIterations = 50;
-    parameters_->cornerRefinementMinAccuracy = 0.01;
+    // Refined below: OpenCV's one window for all tags runs away on small ones.
+    parameters_->cornerRefinementMethod = cv::aruco::CORNER_REFINE_NONE;
   }
 
   std::vector<TagDetection> detect(const cv::Mat& grey) override {
@@ -75,6 +74,7 @@ class TagDetector::Aruco : public Implementation {
     std::vector<TagDetection> tags;
     for (std::size_t i = 0; i < ids.size(); ++i) {
       TagDetection tag{ids[i], {}, cv::arcLength(corners[i], true)};
+      refine(grey, tag.quality / 4, corners[i]);
       for (std::size_t c = 0; c < 4; ++c) {
         // OpenCV starts at the upper left and runs clockwise: backwards from its last.
         const cv::Point2f& corner = corners[i][(3 - c + (half_turn_ ? 2 : 0)) % 4];
@@ -86,7 +86,15 @@ class TagDetector::Aruco : public Implementation {
   }
 
  private:
+  /// Within three quarters of a module there is nothing but the corner.
+  void refine(const cv::Mat& grey, double side_px, std::vector<cv::Point2f>& corners) const {
+    const int reach = std::clamp(static_cast<int>(std::lround(0.75 * side_px / modules_)), 2, 5);
+    const cv::TermCriteria stop(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 50, 0.01);
+    cv::cornerSubPix(grey, corners, {reach, reach}, {-1, -1}, stop);
+  }
+
   bool half_turn_;
+  int modules_;
   cv::Ptr<cv::aruco::Dictionary> codes_;
   cv::Ptr<cv::aruco::DetectorParameters> parameters_;
 };
