@@ -45,10 +45,15 @@ Eigen::Vector3f lobe(const Finish& finish, const Eigen::Vector3f& normal,
 
   // Widen the lobe: a cone of half angle r is spread over half vectors by r / 2.
   const float alpha = std::min(std::hypot(finish.alpha, box.radius_rad / 2), 1.0f);
+  const float cos_eye = normal.dot(towards_eye);
   const Eigen::Vector3f half = (box.towards + towards_eye).normalized();
-  const float fresnel = schlick(finish.specular, half.dot(towards_eye));
-  const float gloss = fresnel * ggx(alpha, normal.dot(half), cos_light, normal.dot(towards_eye));
-  return ((1 - fresnel) * diffuse + Eigen::Vector3f::Constant(gloss)) * cos_light;
+  const float gloss = schlick(finish.specular, half.dot(towards_eye)) *
+                      ggx(alpha, normal.dot(half), cos_light, cos_eye);
+
+  // Light enters and leaves the body through the coat, so that the sum keeps within what arrives.
+  const float passed =
+      (1 - schlick(finish.specular, cos_light)) * (1 - schlick(finish.specular, cos_eye));
+  return (passed * diffuse + Eigen::Vector3f::Constant(gloss)) * cos_light;
 }
 
 }  // namespace
