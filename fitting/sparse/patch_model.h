@@ -10,16 +10,19 @@
 
 namespace sheen::fitting::sparse {
 
-/// A compactly supported bump on the disc of directions: Wendland's function (eq. 5) round a cell of
-/// the quadtree.
+/// A compactly supported bump on the disc of directions: Wendland's function (eq. 5) round a cell
+/// of the quadtree.
 struct Atom {
   Eigen::Vector2f center;  ///< on the unit disc's plane
   float support;           ///< radius in disc units
 };
 
-/// The fixed dictionary: cells of 2x2, 4x4 and 8x8 grids over [-1, 1]^2 that meet the disc, coarse to
-/// fine, support 1.25 cells. The index is the atom's id in models and files.
+/// The fixed dictionary: cells of 2x2, 4x4 and 8x8 grids over [-1, 1]^2 that meet the disc, coarse
+/// to fine, support 1.25 cells. The index is the atom's id in models and files.
 std::span<const Atom> atoms();
+
+/// Mean of every atom's bump over the unit disc, as if its colour were 1 (by area of the disc).
+std::span<const float> atom_means();
 
 /// Terms of the base: the constant, or the constant and the direction's x, y, z in the patch frame.
 inline constexpr std::size_t kConstantBase = 1;
@@ -28,8 +31,8 @@ inline constexpr std::size_t kMaxBumps = 24;
 
 /// Radiance of one patch: colour(x) = base(x) + sum_k c_k theta(|x - center_k| / support_k).
 struct PatchModel {
-  std::size_t base_terms = kConstantBase;  ///< kConstantBase or kLinearBase
-  std::size_t bump_count = 0;              ///< <= kMaxBumps
+  std::size_t base_terms = kConstantBase;      ///< kConstantBase or kLinearBase
+  std::size_t bump_count = 0;                  ///< <= kMaxBumps
   std::array<std::uint8_t, kMaxBumps> atom{};  ///< ids, distinct
   /// Base terms first, then one per bump; RGB, display-referred sRGB.
   std::array<Eigen::Vector3f, kLinearBase + kMaxBumps> coefficient{};
@@ -39,5 +42,8 @@ struct PatchModel {
 
 /// Value of a patch towards `uv` (clamped to the disc), not clamped to [0, 1].
 Eigen::Vector3f evaluate(const PatchModel& model, const Eigen::Vector2f& uv);
+
+/// Mean of a patch over the unit disc (by area of the disc), not clamped to [0, 1].
+Eigen::Vector3f disc_mean(const PatchModel& model);
 
 }  // namespace sheen::fitting::sparse

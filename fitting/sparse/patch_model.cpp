@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#include "fitting/sparse/patch_model.h"
+
+#include "core/geometry/disc_map.h"
+#include "fitting/iwls/wendland.h"
+
+namespace sheen::fitting::sparse {
+
+Eigen::Vector3f evaluate(const PatchModel& model, const Eigen::Vector2f& uv) {
+  const Eigen::Vector3f direction = core::hemisphere_from_disc(uv);
+  Eigen::Vector3f colour = model.coefficient[0];
+  if (model.base_terms == kLinearBase) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      colour += direction[static_cast<Eigen::Index>(axis)] * model.coefficient[1 + axis];
+    }
+  }
+  for (std::size_t bump = 0; bump < model.bump_count; ++bump) {
+    const Atom& atom = atoms()[model.atom[bump]];
+    const float distance = (direction.head<2>() - atom.center).norm() / atom.support;
+    colour += iwls::wendland(distance) * model.coefficient[model.base_terms + bump];
+  }
+  return colour;
+}
+
+Eigen::Vector3f disc_mean(const PatchModel& model) {
+  Eigen::Vector3f colour = model.coefficient[0];
+  // x and y cancel; the mean of z = sqrt(1 - r^2) over the disc is the integral of 2 r z dr = 2/3.
+  if (model.base_terms == kLinearBase) colour += 2.0f / 3.0f * model.coefficient[3];
+  for (std::size_t bump = 0; bump < model.bump_count; ++bump) {
+    colour += atom_means()[model.atom[bump]] * model.coefficient[model.base_terms + bump];
+  }
+  return colour;
+}
+
+}  // namespace sheen::fitting::sparse
