@@ -9,6 +9,15 @@
 
 namespace sheen::render {
 
+namespace {
+
+core::Error too_large(std::size_t patch_count, const std::string& fault) {
+  return {core::Error::Kind::run_failed, "model of " + std::to_string(patch_count) + " patches",
+          fault, "use a coarser mesh, fewer centres or fewer terms"};
+}
+
+}  // namespace
+
 PatchBuffer::PatchBuffer(const gl::Functions& gl, std::size_t patch_count,
                          std::size_t texels_per_patch)
     : gl_(gl), halfs_per_patch_(4 * texels_per_patch) {
@@ -16,14 +25,15 @@ PatchBuffer::PatchBuffer(const gl::Functions& gl, std::size_t patch_count,
   const auto limit = static_cast<std::size_t>(gl::integer_limit(gl, GL_MAX_TEXTURE_BUFFER_SIZE));
   const std::size_t texels = patch_count * texels_per_patch;
   if (texels > limit) {
-    throw core::Error(core::Error::Kind::run_failed,
-                      "model of " + std::to_string(patch_count) + " patches",
-                      "needs " + std::to_string(texels) + " texels, this OpenGL driver holds " +
-                          std::to_string(limit),
-                      "use a coarser mesh, fewer centres or fewer terms");
+    throw too_large(patch_count, "needs " + std::to_string(texels) +
+                                     " texels, this OpenGL driver holds " + std::to_string(limit));
   }
   const std::size_t bytes = patch_count * halfs_per_patch_ * sizeof(Eigen::half);
   buffer_ = gl::make_buffer(gl_, static_cast<GLsizeiptr>(bytes), nullptr);
+  if (gl_.GetError() == GL_OUT_OF_MEMORY) {
+    throw too_large(patch_count, "needs " + std::to_string(bytes) +
+                                     " bytes, more memory than this OpenGL driver has");
+  }
   texture_ = gl::make_texture(gl_, GL_TEXTURE_BUFFER);
   gl_.TextureBuffer(texture_.name(), GL_RGBA16F, buffer_.name());
 }

@@ -35,7 +35,12 @@ class SurfaceRenderer {
 };
 
 /// OpenGL: centres evaluated in the vertex stage, colour sum and weight sum interpolated apart and
-/// divided per fragment (eq. 7). Mesh and light field must outlive the renderer.
+/// divided per fragment (eq. 7). The lens is exact at vertices; where it would bend an edge by more
+/// than 0.05 pixels triangles are tessellated, into at most 64 segments per edge. Pixels no ray of
+/// the lens model reaches stay black. May be called from any thread, one at a time; the context is
+/// made current there. Context, mesh and light field must outlive the renderer. Throws core::Error
+/// (run_failed) for representations without a patch shader and for models or pictures too large for
+/// the driver.
 std::unique_ptr<SurfaceRenderer> make_gl_surface_renderer(Context& context, const core::Mesh& mesh,
                                                           const fitting::LightField& light_field);
 
