@@ -6,6 +6,7 @@
 #include "fitting/mean/mean_representation.h"
 #include "fitting/mean/model_codec.h"
 #include "fitting/model_file/model_codec.h"
+#include "fitting/sparse/model_codec.h"
 
 #include <array>
 #include <stdexcept>
@@ -33,7 +34,8 @@ struct Entry {
 constexpr std::array kRepresentations{Entry{"iwls", make_iwls}, Entry{"mean", make_mean}};
 
 constexpr std::array kCodecs{ModelCodec{"iwls", iwls::encode_model, iwls::decode_model},
-                             ModelCodec{"mean", mean::encode_model, mean::decode_model}};
+                             ModelCodec{"mean", mean::encode_model, mean::decode_model},
+                             ModelCodec{"sparse", sparse::encode_model, sparse::decode_model}};
 
 }  // namespace
 

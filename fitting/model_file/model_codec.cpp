@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 namespace sheen::fitting {
 
@@ -37,16 +38,25 @@ std::string required_string(const nlohmann::json& object, const char* name) {
   return value.get<std::string>();
 }
 
-std::vector<Eigen::half> required_halves(const ModelPart& part, const char* name,
-                                         std::size_t count) {
+std::span<const std::byte> required_bytes(const ModelPart& part, const char* name,
+                                          std::size_t size) {
   const auto found = part.arrays.find(name);
   if (found == part.arrays.end()) throw ModelFault(std::string("it has no array \"") + name + "\"");
-  const std::span<const std::byte> bytes = found->second;
-  // The division keeps a huge count from wrapping around.
-  if (bytes.size() % sizeof(Eigen::half) != 0 || bytes.size() / sizeof(Eigen::half) != count) {
-    throw ModelFault(std::string("its array \"") + name + "\" has " + std::to_string(bytes.size()) +
-                     " bytes instead of " + std::to_string(count) + " numbers");
+  if (found->second.size() != size) {
+    throw ModelFault(std::string("its array \"") + name + "\" has " +
+                     std::to_string(found->second.size()) + " bytes instead of " +
+                     std::to_string(size));
   }
+  return found->second;
+}
+
+std::vector<Eigen::half> required_halves(const ModelPart& part, const char* name,
+                                         std::size_t count) {
+  // A count that no memory could hold must not wrap around when it becomes bytes.
+  if (count > std::numeric_limits<std::size_t>::max() / sizeof(Eigen::half)) {
+    throw ModelFault(std::string("its array \"") + name + "\" cannot be that large");
+  }
+  const auto bytes = required_bytes(part, name, count * sizeof(Eigen::half));
   std::vector<Eigen::half> values(count);
   if (count > 0) std::memcpy(values.data(), bytes.data(), bytes.size());
   for (const Eigen::half value : values) {

@@ -25,8 +25,11 @@ class ModelFault : public std::runtime_error {
 /// One representation's part of a model file (docs/formats.md, "model").
 struct ModelPart {
   nlohmann::json parameters = nlohmann::json::object();
-  /// Named arrays; in the file each is one bufferView. They point into the light field or the file.
+  /// Named arrays; in the file each is one bufferView. They point into the light field, the file or
+  /// `owner`.
   std::map<std::string, std::span<const std::byte>> arrays;
+  /// Keeps alive what `encode` had to make for the arrays.
+  std::shared_ptr<const void> owner;
 };
 
 /// How one representation writes and reads its part. Patch count and observed flags are common to
@@ -49,6 +52,10 @@ const nlohmann::json& required(const nlohmann::json& object, const char* name);
 std::size_t required_size(const nlohmann::json& object, const char* name);
 double required_number(const nlohmann::json& object, const char* name);
 std::string required_string(const nlohmann::json& object, const char* name);
+
+/// An array of the part that has `size` bytes, or ModelFault.
+std::span<const std::byte> required_bytes(const ModelPart& part, const char* name,
+                                          std::size_t size);
 
 /// An array of the part as `count` finite half floats, or ModelFault.
 std::vector<Eigen::half> required_halves(const ModelPart& part, const char* name,
