@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include <cstdio>
-#include <exception>
-
 #include "app/commands/evaluate.h"
 #include "app/commands/info.h"
 #include "app/commands/render.h"
@@ -9,6 +6,9 @@
 #include "app/commands/synth.h"
 #include "app/interrupt.h"
 #include "core/diagnostics/error.h"
+
+#include <cstdio>
+#include <exception>
 
 namespace {
 

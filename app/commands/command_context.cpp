@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/command_context.h"
 
+#include "core/diagnostics/error.h"
+#include "core/files/staged_output.h"
+
 #include <cstdio>
 #include <fstream>
 #include <thread>
-
-#include "core/diagnostics/error.h"
-#include "core/files/staged_output.h"
 
 namespace sheen::app {
 namespace {
@@ -29,7 +29,8 @@ void CommandContext::note(const std::string& line) const {
   if (!quiet) std::fprintf(stderr, "%s\n", line.c_str());
 }
 
-void CommandContext::publish(const nlohmann::ordered_json& document, const std::string& text) const {
+void CommandContext::publish(const nlohmann::ordered_json& document,
+                             const std::string& text) const {
   if (!report_path.empty()) write_report(report_path, document.dump(2));
   const std::string& answer = json ? document.dump(2) : text;
   std::fputs(answer.c_str(), stdout);
@@ -45,8 +46,7 @@ void add_common_options(CLI::App& command, CommandContext& context) {
       ->type_name("N");
   command.add_flag("--quiet", context.quiet, "No progress and no notes on stderr");
   command.add_flag("--json", context.json, "Print one JSON document instead of text");
-  command
-      .add_option("--report", context.report_path, "Also write the JSON document to this file")
+  command.add_option("--report", context.report_path, "Also write the JSON document to this file")
       ->type_name("FILE");
 }
 

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include "app/progress.h"
 
-#include <filesystem>
+#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "app/progress.h"
+#include <filesystem>
 
 namespace sheen::app {
 
-/// What every subcommand is told and how it answers (contract: results on stdout, the rest on stderr).
+/// What every subcommand is told and how it answers (contract: results on stdout, the rest on
+/// stderr).
 struct CommandContext {
   int threads = 1;
   bool quiet = false;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/evaluate.h"
 
-#include <fmt/format.h>
-
 #include "app/commands/session_options.h"
 #include "app/evaluation/contact_sheet.h"
 #include "app/evaluation/evaluate_views.h"
@@ -10,6 +8,8 @@
 #include "core/image/write_image.h"
 #include "fitting/model_file/model_file.h"
 #include "render/surface/surface_renderer.h"
+
+#include <fmt/format.h>
 
 namespace sheen::app {
 namespace {
@@ -35,9 +35,8 @@ std::string name_of(const fitting::Model& model) {
 
 std::string to_text(const std::vector<std::string>& names,
                     const std::vector<EvaluationSummary>& summaries) {
-  std::string text =
-      fmt::format("{:<14}{:>6}{:>11}{:>12}{:>9}{:>9}{:>10}\n", "model", "views", "PSNR mean",
-                  "PSNR median", "SSIM", "RMSE", "covered");
+  std::string text = fmt::format("{:<14}{:>6}{:>11}{:>12}{:>9}{:>9}{:>10}\n", "model", "views",
+                                 "PSNR mean", "PSNR median", "SSIM", "RMSE", "covered");
   for (std::size_t i = 0; i < names.size(); ++i) {
     const EvaluationSummary& s = summaries[i];
     text += fmt::format("{:<14}{:>6}{:>8.2f} dB{:>9.2f} dB{:>9.4f}{:>9.4f}{:>8.1f} %\n", names[i],

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/info.h"
 
-#include <fmt/format.h>
-
-#include <Eigen/Geometry>
-#include <algorithm>
-
 #include "app/pipeline/session_parts.h"
 #include "fitting/model_file/model_file.h"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include <algorithm>
 
 namespace sheen::app {
 namespace {
@@ -28,8 +28,8 @@ nlohmann::ordered_json describe_session(const std::filesystem::path& folder) {
   nlohmann::ordered_json document{{"kind", "session"}};
   document["frames"] = frames->frame_count() ? nlohmann::ordered_json(*frames->frame_count())
                                              : nlohmann::ordered_json(nullptr);
-  document["pictures"] = session.video ? session.video->filename().string()
-                                       : session.image_pattern.value_or("");
+  document["pictures"] =
+      session.video ? session.video->filename().string() : session.image_pattern.value_or("");
   document["size_px"] = {camera.width_px, camera.height_px};
   document["focal_px"] = {camera.focal_px.x(), camera.focal_px.y()};
   if (session.board) {
@@ -76,9 +76,8 @@ void add_info_command(CLI::App& program, CommandContext& context) {
   command->add_option("path", *path, "Session folder or model file")->required();
   add_common_options(*command, context);
   command->callback([path, &context] {
-    const nlohmann::ordered_json document = std::filesystem::is_directory(*path)
-                                                ? describe_session(*path)
-                                                : describe_model(*path);
+    const nlohmann::ordered_json document =
+        std::filesystem::is_directory(*path) ? describe_session(*path) : describe_model(*path);
     context.publish(document, to_text(document));
   });
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/render.h"
 
-#include <fmt/format.h>
-
 #include "app/commands/session_options.h"
 #include "app/evaluation/posed_views.h"
 #include "core/image/write_image.h"
 #include "fitting/model_file/model_file.h"
 #include "render/surface/surface_renderer.h"
+
+#include <fmt/format.h>
 
 namespace sheen::app {
 namespace {
@@ -32,10 +32,11 @@ void run_render(const RenderOptions& options, const CommandContext& context) {
   int done = 0;
   for_each_view(session, views,
                 [&](const capture::Frame& frame, const Eigen::Isometry3d& camera_from_object) {
-    const auto view = renderer->render(session.camera, camera_from_object);
-    core::write_image(options.folder / fmt::format("{:04d}.png", frame.index), view.image);
-    progress.show(++done);
-  });
+                  const auto view = renderer->render(session.camera, camera_from_object);
+                  core::write_image(options.folder / fmt::format("{:04d}.png", frame.index),
+                                    view.image);
+                  progress.show(++done);
+                });
   context.publish({{"views", done}, {"folder", options.folder.string()}},
                   fmt::format("written  {} views to {}\n", done, options.folder.string()));
 }

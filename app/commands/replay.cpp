@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/replay.h"
 
-#include <fmt/format.h>
-
 #include "app/commands/replay_options.h"
 #include "app/evaluation/evaluate_views.h"
 #include "app/pipeline/pipeline.h"
@@ -14,6 +12,8 @@
 #include "fitting/model_file/model_file.h"
 #include "fitting/registry.h"
 #include "render/visibility/depth_visibility.h"
+
+#include <fmt/format.h>
 
 namespace sheen::app {
 namespace {
@@ -58,10 +58,11 @@ void check_something_was_seen(const capture::Session& session, const ProducerSta
     for (const auto& [reason, count] : frames.pose_rejections) {
       reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
     }
-    throw core::bad_input(session.folder,
-                          fmt::format("none of {} frames got a pose ({})", frames.frames_read, reasons),
-                          "check that board.yaml describes the printed board and that the stage is "
-                          "in view and sharp");
+    throw core::bad_input(
+        session.folder,
+        fmt::format("none of {} frames got a pose ({})", frames.frames_read, reasons),
+        "check that board.yaml describes the printed board and that the stage is "
+        "in view and sharp");
   }
   if (samples == 0) {
     throw core::bad_input(session.mesh, "is not seen in any posed frame",
@@ -79,13 +80,11 @@ void write_poses(const std::filesystem::path& path, const std::vector<PosedFrame
 }
 
 std::vector<EvaluationSummary> evaluate_held_out(const capture::Session& session,
-                                                 const core::Mesh& mesh,
-                                                 const LightFields& fields,
+                                                 const core::Mesh& mesh, const LightFields& fields,
                                                  const std::vector<PosedFrame>& held_out,
                                                  const CommandContext& context) {
   const auto gl = render::make_osmesa_context();
-  const auto fitted =
-      render::make_gl_surface_renderer(*gl, mesh, fields.fitted->light_field());
+  const auto fitted = render::make_gl_surface_renderer(*gl, mesh, fields.fitted->light_field());
   const auto mean = render::make_gl_surface_renderer(*gl, mesh, fields.mean_colours());
   render::SurfaceRenderer* const renderers[] = {fitted.get(), mean.get()};
   Progress progress = context.progress("evaluating", static_cast<int>(held_out.size()));
@@ -112,18 +111,18 @@ void run_replay(const ReplayOptions& options, const CommandContext& context) {
 
   // Fit frame by frame.
   LightFields fields(options, mesh, context.threads);
-  Producer producer({.frames = std::move(frames),
-                     .poses = make_pose_estimator(session, options.session.pose_source,
-                                                  options.session.gate),
-                     .visibility = std::move(visibility),
-                     .mesh = mesh,
-                     .camera = session.camera,
-                     .stage_from_object = session.stage_from_object,
-                     .limits = options.limits,
-                     .representation = *fields.fitted,
-                     .baseline = fields.mean.get(),
-                     .hold_out = {options.session.hold_out},
-                     .threads = context.threads});
+  Producer producer(
+      {.frames = std::move(frames),
+       .poses = make_pose_estimator(session, options.session.pose_source, options.session.gate),
+       .visibility = std::move(visibility),
+       .mesh = mesh,
+       .camera = session.camera,
+       .stage_from_object = session.stage_from_object,
+       .limits = options.limits,
+       .representation = *fields.fitted,
+       .baseline = fields.mean.get(),
+       .hold_out = {options.session.hold_out},
+       .threads = context.threads});
   run_producer(producer, frame_count, context);
   const ProducerStatistics& statistics = producer.statistics();
   check_something_was_seen(session, statistics, fields.fitted->statistics().samples);
@@ -139,19 +138,18 @@ void run_replay(const ReplayOptions& options, const CommandContext& context) {
 
   // Measure and report.
   const auto& observed = light_field.observed();
-  ReplayReport report{
-      .frames = statistics,
-      .timer = producer.timer(),
-      .fit = fields.fitted->statistics(),
-      .representation = options.representation,
-      .patches = light_field.patch_count(),
-      .patches_observed =
-          static_cast<std::size_t>(std::count(observed.begin(), observed.end(), std::uint8_t{1})),
-      .coefficients = light_field.coefficient_count(),
-      .model_bytes = std::filesystem::file_size(options.output),
-      .held_out = {},
-      .held_out_mean = {},
-      .options = to_json(options)};
+  ReplayReport report{.frames = statistics,
+                      .timer = producer.timer(),
+                      .fit = fields.fitted->statistics(),
+                      .representation = options.representation,
+                      .patches = light_field.patch_count(),
+                      .patches_observed = static_cast<std::size_t>(
+                          std::count(observed.begin(), observed.end(), std::uint8_t{1})),
+                      .coefficients = light_field.coefficient_count(),
+                      .model_bytes = std::filesystem::file_size(options.output),
+                      .held_out = {},
+                      .held_out_mean = {},
+                      .options = to_json(options)};
   if (!statistics.held_out.empty()) {
     auto summaries = evaluate_held_out(session, mesh, fields, statistics.held_out, context);
     report.held_out = std::move(summaries[0]);
@@ -164,8 +162,8 @@ void run_replay(const ReplayOptions& options, const CommandContext& context) {
 
 void add_replay_command(CLI::App& program, CommandContext& context) {
   auto options = std::make_shared<ReplayOptions>();
-  CLI::App* command = program.add_subcommand(
-      "replay", "Turn a recorded session into a light field");
+  CLI::App* command =
+      program.add_subcommand("replay", "Turn a recorded session into a light field");
   command->footer(
       "Example: fit a session, keep every fifth frame out and report the error on those:\n"
       "  sheen replay sample_data/glossy -o model.glb --hold-out 5");

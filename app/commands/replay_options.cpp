@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/replay_options.h"
 
-#include <map>
-
 #include "fitting/registry.h"
+
+#include <map>
 
 namespace sheen::app {
 namespace {
 
 namespace iwls = fitting::iwls;
 
-const std::map<std::string, iwls::Construction> kFitters{
-    {"quadtree", iwls::Construction::quadtree},
-    {"adaptive", iwls::Construction::adaptive},
-    {"batch", iwls::Construction::batch}};
+const std::map<std::string, iwls::Construction> kFitters{{"quadtree", iwls::Construction::quadtree},
+                                                         {"adaptive", iwls::Construction::adaptive},
+                                                         {"batch", iwls::Construction::batch}};
 const std::map<std::string, iwls::Layout> kLayouts{{"grid", iwls::Layout::grid},
                                                    {"jittered-grid", iwls::Layout::jittered_grid},
                                                    {"disk", iwls::Layout::disk},
@@ -49,8 +48,7 @@ void add_replay_options(CLI::App& command, ReplayOptions& options) {
   command.add_option("-o,--output", options.output, "Model to write (.glb)")
       ->required()
       ->type_name("MODEL.glb");
-  command
-      .add_option("--representation", options.representation, "How patches are modelled")
+  command.add_option("--representation", options.representation, "How patches are modelled")
       ->check(CLI::IsMember(fitting::representation_names()))
       ->capture_default_str();
   add_choice(command, "--fitter", options.iwls.construction, kFitters,
@@ -79,8 +77,9 @@ void add_replay_options(CLI::App& command, ReplayOptions& options) {
                   "Refuse samples seen at a smaller cosine to the normal")
       ->check(CLI::Range(0.0, 0.99))
       ->capture_default_str();
-  command.add_option("--mean-out", options.mean_output,
-                     "Also save the mean colours, what a textured mesh would show")
+  command
+      .add_option("--mean-out", options.mean_output,
+                  "Also save the mean colours, what a textured mesh would show")
       ->type_name("FILE");
   command.add_option("--poses-out", options.poses_output, "Also save the poses, TUM form")
       ->type_name("FILE");

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <CLI/CLI.hpp>
-
-#include <filesystem>
-#include <nlohmann/json.hpp>
-#include <string>
-
 #include "app/commands/session_options.h"
 #include "core/samples/vertex_view.h"
 #include "fitting/iwls/options.h"
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
 
 namespace sheen::app {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/session_options.h"
 
-#include <map>
-
 #include "app/interrupt.h"
+
+#include <map>
 
 namespace sheen::app {
 
@@ -13,9 +13,8 @@ void add_session_options(CLI::App& command, SessionOptions& options) {
       ->capture_default_str();
   command.add_option("--end", options.end, "One past the last frame (default: all)")
       ->check(CLI::PositiveNumber);
-  const std::map<std::string, PoseSource> sources{{"auto", PoseSource::automatic},
-                                                  {"tags", PoseSource::tags},
-                                                  {"file", PoseSource::file}};
+  const std::map<std::string, PoseSource> sources{
+      {"auto", PoseSource::automatic}, {"tags", PoseSource::tags}, {"file", PoseSource::file}};
   command
       .add_option("--pose-source", options.pose_source,
                   "auto: the session's poses.txt if it has one, else the tags (default auto)")

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "app/pipeline/producer.h"
+#include "app/pipeline/session_parts.h"
+#include "capture/session/session.h"
+
 #include <CLI/CLI.hpp>
 
 #include <filesystem>
 #include <optional>
-
-#include "app/pipeline/producer.h"
-#include "app/pipeline/session_parts.h"
-#include "capture/session/session.h"
 
 namespace sheen::app {
 

@@ -2,7 +2,6 @@
 #include "app/evaluation/contact_sheet.h"
 
 #include <fmt/format.h>
-
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
@@ -43,11 +42,14 @@ cv::Mat cell(const cv::Mat& picture, const cv::Rect& crop) {
 
 /// Light where the picture is right, dark where it is wrong.
 cv::Mat difference(const render::RenderedView& view, const cv::Mat& photograph) {
-  cv::Mat absolute;
-  cv::absdiff(view.image, photograph, absolute);
-  cv::Mat inverted(photograph.size(), CV_8UC3, cv::Scalar::all(255));
-  cv::Mat(cv::Scalar::all(255) - absolute * kDifferenceGain).copyTo(inverted, view.mask);
-  return inverted;
+  cv::Mat brightened;
+  cv::absdiff(view.image, photograph, brightened);
+  cv::cvtColor(brightened, brightened, cv::COLOR_BGR2GRAY);
+  brightened.convertTo(brightened, -1, -kDifferenceGain, 255);
+  cv::cvtColor(brightened, brightened, cv::COLOR_GRAY2BGR);
+  cv::Mat picture(photograph.size(), CV_8UC3, kPaper);
+  brightened.copyTo(picture, view.mask);
+  return picture;
 }
 
 /// On white, so that the object is compared and not the missing background.

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "app/evaluation/evaluate_views.h"
+
 #include <opencv2/core/mat.hpp>
 
 #include <string>
 #include <vector>
 
-#include "app/evaluation/evaluate_views.h"
-
 namespace sheen::app {
 
-/// A picture that lets people judge with their eyes: one column per view; the rows are the photograph,
-/// what each renderer drew, and each one's difference to the photograph, brightened. Every cell is
-/// cropped to the object.
+/// A picture that lets people judge with their eyes: one column per view; the rows are the
+/// photograph, what each renderer drew, and each one's difference to the photograph, brightened.
+/// Every cell is cropped to the object.
 class ContactSheet {
  public:
   /// `names` label the renderers' rows, in order.
@@ -25,7 +25,7 @@ class ContactSheet {
 
  private:
   std::vector<std::string> names_;
-  std::vector<std::vector<cv::Mat>> columns_;    ///< per view: one cell per row
+  std::vector<std::vector<cv::Mat>> columns_;       ///< per view: one cell per row
   std::vector<std::vector<std::string>> captions_;  ///< per view: one per row
 };
 

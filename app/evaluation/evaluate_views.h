@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <functional>
-#include <span>
-#include <vector>
-
 #include "app/evaluation/view_evaluation.h"
 #include "app/pipeline/producer.h"
 #include "capture/session/session.h"
 #include "render/surface/surface_renderer.h"
+
+#include <functional>
+#include <span>
+#include <vector>
 
 namespace sheen::app {
 

@@ -9,8 +9,7 @@ void for_each_view(const capture::Session& session, const std::vector<PosedFrame
                    const std::function<void(const capture::Frame&,
                                             const Eigen::Isometry3d& camera_from_object)>& visit) {
   if (views.empty()) return;
-  const auto frames =
-      capture::open_frames(session, views.front().index, views.back().index + 1);
+  const auto frames = capture::open_frames(session, views.front().index, views.back().index + 1);
   auto view = views.begin();
   while (view != views.end()) {
     throw_if_interrupted();

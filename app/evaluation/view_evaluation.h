@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/image/metrics.h"
+#include "render/surface/surface_renderer.h"
+
 #include <nlohmann/json.hpp>
 #include <opencv2/core/mat.hpp>
 
 #include <optional>
 #include <vector>
-
-#include "core/image/metrics.h"
-#include "render/surface/surface_renderer.h"
 
 namespace sheen::app {
 

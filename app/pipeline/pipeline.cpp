@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "app/pipeline/pipeline.h"
 
-#include <exception>
-#include <thread>
-
 #include "app/interrupt.h"
 #include "core/concurrency/bounded_queue.h"
+
+#include <exception>
+#include <thread>
 
 namespace sheen::app {
 namespace {

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
-#include <map>
-#include <memory>
-#include <string>
-#include <vector>
-
 #include "capture/pose/pose_estimator.h"
 #include "capture/source/frame_source.h"
 #include "core/diagnostics/stage_timer.h"
@@ -15,6 +9,12 @@
 #include "core/samples/vertex_view.h"
 #include "core/visibility/visibility.h"
 #include "fitting/representation.h"
+
+#include <array>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace sheen::app {
 
@@ -33,7 +33,7 @@ struct ProducerStatistics {
   std::vector<PosedFrame> held_out;            ///< posed, kept out of the fit
   std::map<std::string, int> pose_rejections;  ///< by name of PoseRejection
   std::array<std::size_t, core::kVertexRejectionCount> vertex_rejections{};
-  std::vector<double> reprojection_px;         ///< of frames posed from tags
+  std::vector<double> reprojection_px;  ///< of frames posed from tags
 };
 
 /// Which frames stay out of the fit: index % every == every / 2; 0 keeps none out.

@@ -25,8 +25,9 @@ double per_patch(const ReplayReport& report) {
 }
 
 double fits_per_patch_per_view(const fitting::FitStatistics& fit) {
-  return fit.patch_views == 0 ? 0.0
-                              : static_cast<double>(fit.fits) / static_cast<double>(fit.patch_views);
+  return fit.patch_views == 0
+             ? 0.0
+             : static_cast<double>(fit.fits) / static_cast<double>(fit.patch_views);
 }
 
 int rejected(const ProducerStatistics& frames) {
@@ -60,10 +61,9 @@ std::string held_out_row(const std::string& name, const EvaluationSummary& summa
 }
 
 std::string frames_text(const ProducerStatistics& frames) {
-  std::string text =
-      fmt::format("frames   {} read, {} posed, {} rejected, {} fitted, {} held out\n",
-                  frames.frames_read, frames.posed.size(), rejected(frames), frames.frames_fitted,
-                  frames.held_out.size());
+  std::string text = fmt::format(
+      "frames   {} read, {} posed, {} rejected, {} fitted, {} held out\n", frames.frames_read,
+      frames.posed.size(), rejected(frames), frames.frames_fitted, frames.held_out.size());
   for (const auto& [reason, count] : frames.pose_rejections) {
     text += fmt::format("         {} refused: {}\n", count, reason);
   }
@@ -116,10 +116,9 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
           {"representation", report.representation},
           {"held_out", held_out_json(report.held_out)},
           {"held_out_mean_colour", held_out_json(report.held_out_mean)},
-          {"reprojection_px",
-           frames.reprojection_px.empty()
-               ? nlohmann::ordered_json(nullptr)
-               : nlohmann::ordered_json(median_of(frames.reprojection_px))},
+          {"reprojection_px", frames.reprojection_px.empty()
+                                  ? nlohmann::ordered_json(nullptr)
+                                  : nlohmann::ordered_json(median_of(frames.reprojection_px))},
           {"rejections", rejections},
           {"vertex_rejections", vertices},
           {"options", report.options}};

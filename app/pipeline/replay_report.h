@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "app/evaluation/view_evaluation.h"
+#include "app/pipeline/producer.h"
+
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
 #include <optional>
 #include <string>
-
-#include "app/evaluation/view_evaluation.h"
-#include "app/pipeline/producer.h"
 
 namespace sheen::app {
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "app/pipeline/session_parts.h"
 
-#include <fmt/format.h>
-
-#include <Eigen/Geometry>
-
 #include "core/diagnostics/error.h"
 #include "core/mesh/read_mesh.h"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
 
 namespace sheen::app {
 namespace {
@@ -45,10 +44,10 @@ core::Mesh read_session_mesh(const capture::Session& session) {
   for (const auto& position : mesh.positions) bounds.extend(position);
   const float size_m = bounds.diagonal().norm();
   if (size_m > kLargestObject_m || size_m < kSmallestObject_m) {
-    throw core::bad_input(
-        session.mesh, fmt::format("is {:.4g} m across, its unit must be the metre", size_m),
-        size_m > kLargestObject_m ? "scale it, by 0.001 if it is in millimetres"
-                                  : "scale it to its true size");
+    throw core::bad_input(session.mesh,
+                          fmt::format("is {:.4g} m across, its unit must be the metre", size_m),
+                          size_m > kLargestObject_m ? "scale it, by 0.001 if it is in millimetres"
+                                                    : "scale it to its true size");
   }
   return mesh;
 }

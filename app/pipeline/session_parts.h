@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <memory>
-
 #include "capture/pose/pose_estimator.h"
 #include "capture/session/session.h"
 #include "core/mesh/mesh.h"
+
+#include <memory>
 
 namespace sheen::app {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Bad input gets one clear line and exit code 2, and nothing existing is overwritten.
+#include "tests/app/program.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <regex>
-
-#include "tests/app/program.h"
 
 namespace sheen::tests {
 namespace {
@@ -26,8 +26,8 @@ class BadInput : public testing::Test {
 
   void replace(const std::string& file, const std::string& pattern, const std::string& by) const {
     const std::string before = read_file(session_ / file);
-    const std::string after =
-        std::regex_replace(before, std::regex(pattern), by, std::regex_constants::format_first_only);
+    const std::string after = std::regex_replace(before, std::regex(pattern), by,
+                                                 std::regex_constants::format_first_only);
     ASSERT_NE(before, after) << pattern << " is not in " << file;
     write_file(session_ / file, after);
   }
@@ -114,18 +114,20 @@ TEST_F(BadInput, MeshWithoutTriangles) {
 }
 
 TEST_F(BadInput, MeshWithNaN) {
-  write_file(session_ / "object.ply",
-             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-             "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-             "0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n");
+  write_file(
+      session_ / "object.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n");
   expect_refused("object.ply");
 }
 
 TEST_F(BadInput, MeshInMillimetres) {
-  write_file(session_ / "object.ply",
-             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-             "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-             "0 0 0\n60000 0 0\n0 60000 0\n3 0 1 2\n");
+  write_file(
+      session_ / "object.ply",
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n60000 0 0\n0 60000 0\n3 0 1 2\n");
   expect_refused("object.ply");
 }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The whole way: recording -> tags -> pose -> visibility -> samples -> fit -> model -> views never seen.
-#include <gtest/gtest.h>
-
-#include <Eigen/Geometry>
-#include <algorithm>
-
+// The whole way: recording -> tags -> pose -> visibility -> samples -> fit -> model -> views never
+// seen.
 #include "capture/pose/trajectory.h"
 #include "tests/app/program.h"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <algorithm>
 
 namespace sheen::tests {
 namespace {
@@ -23,7 +24,8 @@ struct PoseErrors {
   std::vector<double> degrees;
 };
 
-PoseErrors compare_poses(const std::filesystem::path& estimate, const std::filesystem::path& truth) {
+PoseErrors compare_poses(const std::filesystem::path& estimate,
+                         const std::filesystem::path& truth) {
   PoseErrors errors;
   const auto truth_entries = capture::read_trajectory(truth);
   for (const auto& entry : capture::read_trajectory(estimate).entries()) {
@@ -38,16 +40,17 @@ PoseErrors compare_poses(const std::filesystem::path& estimate, const std::files
   return errors;
 }
 
-double psnr(const nlohmann::json& error) { return error.at("psnr").get<double>(); }
+double psnr(const nlohmann::json& error) {
+  return error.at("psnr").get<double>();
+}
 
 TEST(SampleSession, IsPosedFromItsTagsAndBeatsMeanColoursOnViewsNeverSeen) {
   const TemporaryFolder folder;
   const auto model = folder.path() / "model.glb";
   const auto mean = folder.path() / "mean.glb";
   const auto poses = folder.path() / "poses.txt";
-  const ProgramRun replay =
-      run_sheen({"replay", sample_session(), "-o", model, "--mean-out", mean, "--poses-out", poses,
-                 "--json", "--quiet"});
+  const ProgramRun replay = run_sheen({"replay", sample_session(), "-o", model, "--mean-out", mean,
+                                       "--poses-out", poses, "--json", "--quiet"});
   ASSERT_EQ(replay.exit_code, 0) << replay.standard_error;
   const auto report = replay.json();
 
@@ -60,8 +63,8 @@ TEST(SampleSession, IsPosedFromItsTagsAndBeatsMeanColoursOnViewsNeverSeen) {
   EXPECT_LT(median(errors.degrees), 0.03);
 
   // Clean views beside the path: at least 2 dB above what a textured mesh shows.
-  const ProgramRun evaluation = run_sheen({"evaluate", model, sample_session() / "held_out",
-                                           "--beside", mean, "--json", "--quiet"});
+  const ProgramRun evaluation = run_sheen(
+      {"evaluate", model, sample_session() / "held_out", "--beside", mean, "--json", "--quiet"});
   ASSERT_EQ(evaluation.exit_code, 0) << evaluation.standard_error;
   const auto figures = evaluation.json();
   EXPECT_GE(psnr(figures["mean"]), psnr(figures["beside"]["mean"]) + 2.0);
@@ -70,8 +73,8 @@ TEST(SampleSession, IsPosedFromItsTagsAndBeatsMeanColoursOnViewsNeverSeen) {
 TEST(MatteScene, IsNotFittedWorseThanByMeanColours) {
   const TemporaryFolder folder;
   const auto session = folder.path() / "matte";
-  const ProgramRun synth = run_sheen({"synth", "matte", "-o", session, "--size", "320x180", "--frames",
-                                      "60", "--vertices", "4000", "--quiet"});
+  const ProgramRun synth = run_sheen({"synth", "matte", "-o", session, "--size", "320x180",
+                                      "--frames", "60", "--vertices", "4000", "--quiet"});
   ASSERT_EQ(synth.exit_code, 0) << synth.standard_error;
   const auto model = folder.path() / "model.glb";
   const auto mean = folder.path() / "mean.glb";
@@ -117,15 +120,21 @@ TEST(Replay, BothVisibilitiesGiveNearlyTheSameSamples) {
 TEST(Replay, EveryConstructionLayoutAndBasisGivesAFiniteModelThatCanBeDrawn) {
   const TemporaryFolder folder;
   const std::vector<std::vector<std::string>> choices{
-      {"--fitter", "adaptive"}, {"--fitter", "batch", "--layout", "disk"},
+      {"--fitter", "adaptive"},
+      {"--fitter", "batch", "--layout", "disk"},
       {"--centers", "64", "--layout", "jittered-grid"},
-      {"--terms", "1"},         {"--terms", "6", "--layout", "jittered-disk"},
-      {"--terms", "auto"},      {"--faithful"},
+      {"--terms", "1"},
+      {"--terms", "6", "--layout", "jittered-disk"},
+      {"--terms", "auto"},
+      {"--faithful"},
       {"--representation", "mean"}};
   for (const auto& choice : choices) {
-    std::vector<std::string> arguments{"replay", sample_session(), "-o", folder.path() / "model.glb",
-                                       "--start", "4", "--end", "12", "--hold-out", "4", "--json",
-                                       "--quiet"};
+    std::vector<std::string> arguments{"replay",     sample_session(),
+                                       "-o",         folder.path() / "model.glb",
+                                       "--start",    "4",
+                                       "--end",      "12",
+                                       "--hold-out", "4",
+                                       "--json",     "--quiet"};
     arguments.insert(arguments.end(), choice.begin(), choice.end());
     const ProgramRun run = run_sheen(arguments);
     ASSERT_EQ(run.exit_code, 0) << choice.front() << ": " << run.standard_error;
