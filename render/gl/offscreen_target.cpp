@@ -4,6 +4,7 @@
 #include "core/diagnostics/error.h"
 
 #include <string>
+#include <utility>
 
 namespace sheen::render::gl {
 namespace {

@@ -2,7 +2,12 @@
 #include "core/diagnostics/error.h"
 #include "render/iwls/iwls_patch_shader.h"
 #include "render/mean/mean_patch_shader.h"
+#include "render/sparse/sparse_patch_shader.h"
 #include "render/surface/patch_shader.h"
+
+#include <string>
+#include <string_view>
+#include <utility>
 
 namespace sheen::render {
 namespace {
@@ -13,6 +18,7 @@ using Factory = std::unique_ptr<PatchShader> (*)(const gl::Functions&, const fit
 constexpr std::pair<std::string_view, Factory> kPatchShaders[] = {
     {"iwls", iwls::make_patch_shader},
     {"mean", mean::make_patch_shader},
+    {"sparse", sparse::make_patch_shader},
 };
 
 }  // namespace
