@@ -65,7 +65,10 @@ Adaptive<kTerms>::Adaptive(FitSettings settings, std::size_t patch_count)
 template <std::size_t kTerms>
 std::size_t Adaptive<kTerms>::current_radius(const NormalEquations<kTerms>* sums) const {
   std::size_t k = 0;
-  while (k + 1 < radii_.size() && sums[k].count > settings_.refine_above) ++k;
+  while (k + 1 < radii_.size() && sums[k].count > settings_.refine_above &&
+         sums[k + 1].count >= static_cast<double>(kTerms)) {
+    ++k;
+  }
   return k;
 }
 

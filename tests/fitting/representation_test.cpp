@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "fitting/representation.h"
+
+#include "fitting/mean/mean_light_field.h"
+#include "tests/fitting/samples_for_tests.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+namespace sheen::fitting {
+namespace {
+
+constexpr std::size_t kPatches = 3000;
+
+// A view that sees a random third of the patches from a random side.
+core::SampleBatch random_view(std::mt19937& random) {
+  const auto unit = [&] { return static_cast<double>(random()) / 4294967296.0; };
+  core::SampleBatch batch;
+  const Eigen::Vector2d side(1.4 * unit() - 0.7, 1.4 * unit() - 0.7);
+  for (std::uint32_t patch = 0; patch < kPatches; ++patch) {
+    if (unit() > 0.33) continue;
+    const Eigen::Vector2d x = side + 0.1 * Eigen::Vector2d(unit(), unit());
+    testing::add_sample(batch, patch, x, {unit(), 0.5 * x.x() + 0.5, 0.3});
+  }
+  return batch;
+}
+
+std::string bytes_of(const LightField& light_field) {
+  std::span<const Eigen::half> halves;
+  if (const auto* model = dynamic_cast<const iwls::LightFieldModel*>(&light_field)) {
+    halves = model->coefficients();
+  } else {
+    halves = dynamic_cast<const mean::MeanLightField&>(light_field).coefficients();
+  }
+  return {reinterpret_cast<const char*>(halves.data()), halves.size_bytes()};
+}
+
+std::vector<RepresentationOptions> candidates(int threads) {
+  std::vector<RepresentationOptions> options;
+  for (const auto construction : testing::kConstructions) {
+    for (const bool faithful : {false, true}) {
+      options.push_back({{construction, iwls::Layout::disk, 16, 3, faithful}, threads});
+    }
+  }
+  return options;
+}
+
+TEST(Representation, ThreadsDoNotChangeTheResult) {
+  const unsigned seed = 61;
+  for (const std::string& name : representation_names()) {
+    for (std::size_t i = 0; i < candidates(1).size(); ++i) {
+      std::map<int, std::string> models;
+      std::map<int, std::size_t> fits;
+      std::map<int, std::vector<std::uint32_t>> updates;
+      for (const int threads : {1, 2, 8}) {
+        std::mt19937 random(seed);
+        const auto representation =
+            make_representation(name, testing::isolated(kPatches), candidates(threads)[i]);
+        for (int view = 0; view < 20; ++view) {
+          updates[threads] = representation->absorb(random_view(random)).patches;
+        }
+        representation->finish();
+        models[threads] = bytes_of(representation->light_field());
+        fits[threads] = representation->statistics().fits;
+      }
+      for (const int threads : {2, 8}) {
+        EXPECT_TRUE(models[threads] == models[1]) << name << " " << threads;
+        EXPECT_EQ(fits[threads], fits[1]);
+        EXPECT_EQ(updates[threads], updates[1]);
+      }
+    }
+  }
+}
+
+// The update is the exact difference of the models before and after, flags included.
+TEST(Representation, UpdatesListExactlyWhatChanged) {
+  for (const std::string& name : representation_names()) {
+    for (const RepresentationOptions& options : candidates(1)) {
+      std::mt19937 random(62);
+      const auto representation = make_representation(name, testing::isolated(kPatches), options);
+      const LightField& model = representation->light_field();
+      std::string before = bytes_of(model);
+      std::vector<std::uint8_t> observed_before = model.observed();
+      const auto expect_exact = [&](const ModelUpdate& update) {
+        const std::string after = bytes_of(model);
+        const std::size_t stride = after.size() / kPatches;
+        std::vector<std::uint32_t> changed;
+        for (std::uint32_t patch = 0; patch < kPatches; ++patch) {
+          const std::size_t at = patch * stride;
+          if (std::memcmp(after.data() + at, before.data() + at, stride) != 0 ||
+              model.observed()[patch] != observed_before[patch]) {
+            changed.push_back(patch);
+          }
+        }
+        EXPECT_EQ(update.patches, changed) << name;
+        before = after;
+        observed_before = model.observed();
+      };
+      for (int view = 0; view < 6; ++view)
+        expect_exact(representation->absorb(random_view(random)));
+      expect_exact(representation->finish());
+      expect_exact(representation->absorb(random_view(random)));
+      expect_exact(representation->finish());
+      // Nothing new: nothing changes.
+      EXPECT_TRUE(representation->finish().patches.empty());
+    }
+  }
+}
+
+TEST(Representation, BatchChangesInFinishOnly) {
+  const auto batch =
+      testing::make_iwls({iwls::Construction::batch, iwls::Layout::grid, 16, 3, false});
+  EXPECT_TRUE(batch->absorb(testing::one_sample(0, {0, 0}, {1, 0, 0})).patches.empty());
+  EXPECT_EQ(batch->light_field().observed()[0], 0);
+  EXPECT_EQ(batch->finish().patches, std::vector<std::uint32_t>{0});
+  EXPECT_EQ(batch->light_field().observed()[0], 1);
+}
+
+TEST(Representation, MeanIsTheMean) {
+  const auto mean = make_representation("mean", testing::isolated(1), {});
+  mean->absorb(testing::one_sample(0, {0.9, 0}, {0.25, 0.5, 1.0}));
+  mean->absorb(testing::one_sample(0, {-0.9, 0}, {0.75, 0.5, 0.0}));
+  mean->finish();
+  EXPECT_EQ(mean->light_field().mean_colour(0), Eigen::Vector3f(0.5f, 0.5f, 0.5f));
+  EXPECT_EQ(mean->light_field().evaluate(0, {0.3f, 0.3f}).weight_sum, 1.0f);
+  EXPECT_EQ(mean->light_field().coefficient_count(), 3u);
+}
+
+// 2 patches x 16 centres x 3 terms x 3 channels.
+TEST(Representation, CountsEveryStoredNumber) {
+  const auto iwls = testing::make_iwls({}, 2);
+  EXPECT_EQ(iwls->light_field().coefficient_count(), 2u * 16u * 3u * 3u);
+}
+
+TEST(Registry, RefusesWhatItDoesNotKnow) {
+  EXPECT_EQ(representation_names().front(), "iwls");
+  EXPECT_THROW(make_representation("nonsense", testing::isolated(1), {}), std::invalid_argument);
+  for (const iwls::Options& options :
+       {iwls::Options{{}, {}, 17, 3, false}, iwls::Options{{}, {}, 16, 2, false},
+        iwls::Options{{}, {}, 16, 6, true}}) {
+    EXPECT_THROW(make_representation("iwls", testing::isolated(1), {options, 1}),
+                 std::invalid_argument);
+  }
+  EXPECT_THROW(make_representation("mean", testing::isolated(1), {{}, 0}), std::invalid_argument);
+}
+
+TEST(Options, NamesAndEnumeratorsAreInverse) {
+  for (const auto construction : testing::kConstructions) {
+    EXPECT_EQ(iwls::construction_named(iwls::name_of(construction)), construction);
+  }
+  for (const auto layout : testing::kLayouts) {
+    EXPECT_EQ(iwls::layout_named(iwls::name_of(layout)), layout);
+  }
+  EXPECT_FALSE(iwls::layout_named("hexagons"));
+}
+
+}  // namespace
+}  // namespace sheen::fitting
