@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#include "bench/study/methods.h"
+
+#include <fmt/core.h>
+
+namespace sheen::bench {
+
+using fitting::iwls::Construction;
+
+std::unique_ptr<fitting::Representation> Method::make(std::size_t patch_count) const {
+  core::VertexNeighbours neighbours;
+  neighbours.offsets.assign(patch_count + 1, 0);
+  return fitting::make_representation(representation, neighbours, options);
+}
+
+Method iwls_method(Construction construction, bool faithful, int centers, int terms,
+                   fitting::iwls::Layout layout) {
+  fitting::RepresentationOptions options;
+  options.iwls.construction = construction;
+  options.iwls.faithful = faithful;
+  options.iwls.centers = centers;
+  options.iwls.terms = terms;
+  options.iwls.layout = layout;
+  const std::string name = fmt::format("{} {}x{} {}", name_of(construction), centers, terms,
+                                       faithful ? "faithful" : "ridge");
+  return {name, "iwls", options};
+}
+
+std::vector<Method> all_methods() {
+  std::vector<Method> methods;
+  for (const bool faithful : {true, false}) {
+    for (const Construction construction :
+         {Construction::quadtree, Construction::adaptive, Construction::batch}) {
+      methods.push_back(iwls_method(construction, faithful));
+    }
+  }
+  methods.push_back(iwls_method(Construction::quadtree, false, 64));
+  methods.push_back(iwls_method(Construction::batch, false, 16, 1));
+  methods.push_back(iwls_method(Construction::batch, false, 16, 6));
+  for (const std::string& name : fitting::representation_names()) {
+    if (name != "iwls") methods.push_back({name, name, {}});
+  }
+  return methods;
+}
+
+std::string default_method_name() {
+  const std::string first = fitting::representation_names().front();
+  return first == "iwls" ? iwls_method(Construction::quadtree, false).name : first;
+}
+
+}  // namespace sheen::bench

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "fitting/registry.h"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace sheen::bench {
+
+/// A representation with its settings, under the name that tables use.
+struct Method {
+  std::string name;
+  std::string representation;
+  fitting::RepresentationOptions options;
+
+  /// For independent points: no patch has neighbours.
+  [[nodiscard]] std::unique_ptr<fitting::Representation> make(std::size_t patch_count) const;
+};
+
+/// IWLS in one construction; `faithful` follows the paper to the letter.
+Method iwls_method(fitting::iwls::Construction construction, bool faithful, int centers = 16,
+                   int terms = 3, fitting::iwls::Layout layout = fitting::iwls::Layout::grid);
+
+/// Everything the studies compare: the constructions of IWLS, faithful and with the ridge, batch
+/// with one and six terms, and every other representation of the registry by its name.
+std::vector<Method> all_methods();
+
+/// Name of the method that a user gets who asks for nothing.
+std::string default_method_name();
+
+}  // namespace sheen::bench

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "bench/study/corruption.h"
+#include "bench/study/environment.h"
+#include "bench/study/study_set.h"
+
+#include <cstddef>
+#include <cstdint>
+
+namespace sheen::bench {
+
+/// An object of many points seen by one camera: 40 % Lambert, 30 % GGX .60, 10 % each of GGX .25,
+/// mix and GGX .15.
+struct SceneOptions {
+  std::size_t points = 400;
+  std::size_t samples_per_point = 96;  ///< on average; the walk is as long as that takes
+  Corruption corruption;               ///< the pose error is one per frame, as a tracker's is
+  std::uint64_t seed = 1;
+};
+
+/// The scene with two sets of test views.
+struct Scene {
+  StudySet path;       ///< tests along another handheld walk
+  StudySet scattered;  ///< the same training, tests scattered over each point's hemisphere
+  double mean_samples_per_point = 0;
+};
+
+/// Normals over the sphere down to 35 degrees below the horizon, far camera on a handheld walk of
+/// three rounds; a point sees a frame when n . v > kMinCosine.
+Scene make_scene(const SceneOptions& options, const Environment& environment);
+
+}  // namespace sheen::bench
