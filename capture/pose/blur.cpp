@@ -37,7 +37,7 @@ std::optional<double> measure_tag(const cv::Mat& grey, const core::CameraModel& 
     for (const std::size_t s : {pair, pair + 2}) {
       const TagSide side(camera, corners[s], corners[(s + 1) % 4], centre);
       const double module_px = 2 * side.outward().dot(side.point(0.5) - centre) / modules;
-      measure_side(grey, side, std::clamp(0.9 * module_px, 1.5, 12.0), widths);
+      measure_side(grey, side, std::clamp(0.9 * module_px, 1.5, 8.0), widths);
     }
     const auto width = median(widths);
     if (width && (!widest || *width > *widest)) widest = width;

@@ -49,7 +49,7 @@ class EdgeProfile {
   [[nodiscard]] std::optional<double> rise_width_px() const;
 
  private:
-  static constexpr int kSteps = 24;
+  static constexpr int kSteps = 32;
   EdgeProfile() = default;
   [[nodiscard]] double inside_level() const { return (values_[0] + values_[1]) / 2; }
   [[nodiscard]] double outside_level() const { return (values_[kSteps] + values_[kSteps - 1]) / 2; }
