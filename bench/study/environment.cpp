@@ -107,11 +107,11 @@ Vector3f busy_wall(const Vector3f& direction) {
 Environment studio_environment() {
   Environment environment;
   constexpr std::size_t per_lamp = 64;
-  add_lamp(environment, towards(20, 55), 15 * kDegree, {4.5f, 4.2f, 3.7f}, per_lamp);
-  add_lamp(environment, towards(110, 30), 10 * kDegree, {5.2f, 5.2f, 5.2f}, per_lamp);
-  add_lamp(environment, towards(185, 65), 8 * kDegree, {6.5f, 6.3f, 5.8f}, per_lamp);
-  add_lamp(environment, towards(250, 10), 12 * kDegree, {3.6f, 4.0f, 4.6f}, per_lamp);
-  add_lamp(environment, towards(310, 40), 6 * kDegree, {8.0f, 7.4f, 6.6f}, per_lamp);
+  add_lamp(environment, towards(20, 55), 15 * kDegree, {5.9f, 5.5f, 4.8f}, per_lamp);
+  add_lamp(environment, towards(110, 30), 10 * kDegree, {6.8f, 6.8f, 6.8f}, per_lamp);
+  add_lamp(environment, towards(185, 65), 8 * kDegree, {8.5f, 8.2f, 7.5f}, per_lamp);
+  add_lamp(environment, towards(250, 10), 12 * kDegree, {4.7f, 5.2f, 6.0f}, per_lamp);
+  add_lamp(environment, towards(310, 40), 6 * kDegree, {10.4f, 9.6f, 8.6f}, per_lamp);
   add_sphere(environment, 1600, sky);
   return environment;
 }

@@ -16,7 +16,7 @@ Lumisphere::Lumisphere(const Material& material, const Eigen::Matrix3f& world_fr
   for (std::size_t i = 0; i < environment.direction.size(); ++i) {
     const Vector3f local = world_from_patch.transpose() * environment.direction[i];
     if (local.z() < lowest) continue;
-    const Vector3f power = kExposure * environment.power[i];
+    const Vector3f& power = environment.power[i];
     diffuse_ += material.albedo.cwiseProduct(power) * (local.z() / std::numbers::pi_v<float>);
     if (!material.is_glossy()) continue;
     direction_.push_back(local);

@@ -18,7 +18,8 @@ class Lumisphere {
   Lumisphere(const Material& material, const Eigen::Matrix3f& world_from_patch,
              const Environment& environment);
 
-  /// Exposed radiance, linear, not clamped, towards `view` (unit, patch frame, z > 0).
+  /// Radiance on the scale of display values (the environments are lit so that a few percent of
+  /// the samples of glossy points clamp), not clamped, towards `view` (unit, patch frame, z > 0).
   [[nodiscard]] Eigen::Vector3f radiance(const Eigen::Vector3f& view) const;
 
  private:
@@ -29,9 +30,5 @@ class Lumisphere {
   std::vector<float> lambda_;
   std::vector<Eigen::Vector3f> power_;
 };
-
-/// What a directional value is multiplied by to become a display value; chosen so that a few
-/// percent of the samples of glossy points clamp (0 to 11 % by class, tests/bench).
-inline constexpr float kExposure = 1.0f;
 
 }  // namespace sheen::bench

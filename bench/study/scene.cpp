@@ -19,12 +19,17 @@ enum Stream : std::uint64_t {
   kFrame = 202,
   kNoise = 203,
   kTraining = 204,
-  kTest = 205
+  kTest = 205,
+  kScattered = 206
 };
 
 // Positions on the walk in its finest division: frame k of any division is one of them.
 constexpr std::size_t kFinestSteps = 1u << 14;
 constexpr std::size_t kTestFrames = 120;
+
+// Scattered cameras: sine of the elevation, the heights that the walk covers.
+constexpr float kLowestEye = 0.15f;
+constexpr float kHighestEye = 0.95f;
 
 // A direction of the camera as it is and as the tracker reports it.
 struct Frame {
@@ -60,7 +65,7 @@ MaterialClass material_of(std::size_t point) {
 // Points of equal areas on the sphere, the lowest part left out.
 Vector3f normal_of(std::size_t point, std::size_t count) {
   const float part = (static_cast<float>(point) + 0.5f) / static_cast<float>(count);
-  const float z = 1.0f - 1.57f * part;
+  const float z = 1.0f - 1.2f * part;
   const float radius = std::sqrt(1.0f - z * z);
   const float azimuth = 2.3999632f * static_cast<float>(point);  // golden angle
   return {radius * std::cos(azimuth), radius * std::sin(azimuth), z};
@@ -71,7 +76,8 @@ struct PointMaker {
   const SceneOptions& options;
   const Environment& environment;
   const std::vector<Frame>& training;
-  const std::vector<Frame>& test;
+  const std::vector<Vector3f>& path_eyes;
+  const std::vector<Vector3f>& scattered_eyes;
 
   void add(std::size_t point_idx, Scene& scene) const {
     const core::TangentFrame frame = core::tangent_frame(normal_of(point_idx, options.points));
@@ -100,13 +106,14 @@ struct PointMaker {
     }
     // See the test frames, and scattered directions.
     StudyPoint scattered{material, along_path.training, {}};
-    for (const Frame& view : test) {
-      const Vector3f local = world_from_patch.transpose() * view.actual;
-      if (local.z() >= kMinCosine) along_path.test.push_back(truth_at(local));
-    }
-    for (const Vector3f& local : test_directions(74, key)) {
-      scattered.test.push_back(truth_at(local));
-    }
+    const auto look = [&](const std::vector<Vector3f>& eyes, StudyPoint& point) {
+      for (const Vector3f& eye : eyes) {
+        const Vector3f local = world_from_patch.transpose() * eye;
+        if (local.z() >= kMinCosine) point.test.push_back(truth_at(local));
+      }
+    };
+    look(path_eyes, along_path);
+    look(scattered_eyes, scattered);
     scene.path.points.push_back(std::move(along_path));
     scene.scattered.points.push_back(std::move(scattered));
   }
@@ -135,10 +142,16 @@ Scene make_scene(const SceneOptions& options, const Environment& environment) {
   const auto frame_count = static_cast<std::size_t>(
       std::lround(static_cast<double>(options.samples_per_point) / fraction));
   const std::vector<Frame> training = walk(training_orbit, frame_count, options);
-  const std::vector<Frame> test = walk(test_orbit, kTestFrames, options);
+  std::vector<Vector3f> path_eyes;
+  std::vector<Vector3f> scattered_eyes;
+  for (std::size_t i = 0; i < kTestFrames; ++i) {
+    path_eyes.push_back(test_orbit.at(static_cast<float>(i) / static_cast<float>(kTestFrames)));
+    Random random(hash_of({options.seed, kScattered, i}));
+    scattered_eyes.push_back(random.on_sphere(kLowestEye, kHighestEye));
+  }
   // Let every point look.
   Scene scene{{"scene-path", frame_count, {}}, {"scene-scattered", frame_count, {}}};
-  const PointMaker maker{options, environment, training, test};
+  const PointMaker maker{options, environment, training, path_eyes, scattered_eyes};
   for (std::size_t i = 0; i < options.points; ++i) maker.add(i, scene);
   scene.mean_samples_per_point =
       static_cast<double>(scene.path.sample_count()) / static_cast<double>(options.points);

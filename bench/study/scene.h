@@ -22,11 +22,11 @@ struct SceneOptions {
 /// The scene with two sets of test views.
 struct Scene {
   StudySet path;       ///< tests along another handheld walk
-  StudySet scattered;  ///< the same training, tests scattered over each point's hemisphere
+  StudySet scattered;  ///< the same training, tests from cameras scattered over the same heights
   double mean_samples_per_point = 0;
 };
 
-/// Normals over the sphere down to 35 degrees below the horizon, far camera on a handheld walk of
+/// Normals over the sphere down to 12 degrees below the horizon, far camera on a handheld walk of
 /// three rounds; a point sees a frame when n . v > kMinCosine.
 Scene make_scene(const SceneOptions& options, const Environment& environment);
 
