@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -112,7 +113,10 @@ core::CameraModel read_camera(const std::filesystem::path& path) {
     core::CameraModel camera(intrinsics);
     if (!(camera.valid_radius() > 0.01)) reader.fail("the distortion folds the picture over");
     return camera;
-  } catch (const cv::Exception&) {
+  } catch (const core::Error&) {
+    throw;
+  } catch (const std::exception&) {
+    // OpenCV's parser answers garbage with its own exceptions and with std::length_error.
     throw core::bad_input(path, "is not in OpenCV's FileStorage form", kRemedy);
   }
 }
