@@ -152,7 +152,7 @@ std::unique_ptr<const LightField> read_light_field(const Glb& glb, std::size_t p
 
 Model parse_model(std::string file) {
   const Glb glb = parse_glb(file);
-  const json& extensions = required(glb.document, "extensions");
+  const json extensions = glb.document.value("extensions", json());
   if (!extensions.is_object() || !extensions.contains(kExtension)) {
     throw ModelFault(std::string("it does not hold the extension ") + kExtension);
   }
