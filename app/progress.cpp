@@ -32,9 +32,10 @@ void Progress::show(int done, const std::string& note) {
     drawn_ = true;
     return;
   }
-  if (done < next_line_) return;
-  next_line_ = done + std::max(1, (total_ > 0 ? total_ : 1000) / kPlainLines);
-  if (total_ > 0 && done < total_) next_line_ = std::min(next_line_, total_);
+  // A line for every tenth of the work, the last one at its end.
+  const int step = std::max(1, ((total_ > 0 ? total_ : 1000) + kPlainLines - 1) / kPlainLines);
+  if (done < last_line_ + step && done != total_) return;
+  last_line_ = done;
   const std::string of_total = total_ > 0 ? fmt::format("/{}", total_) : "";
   fmt::print(stderr, "{} {}{}{}{}\n", what_, done, of_total, note.empty() ? "" : ", ", note);
 }

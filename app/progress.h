@@ -31,7 +31,7 @@ class Progress {
   bool quiet_;
   bool terminal_;
   bool drawn_ = false;
-  int next_line_ = 0;
+  int last_line_ = 0;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_draw_{};
 };

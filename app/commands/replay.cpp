@@ -3,6 +3,7 @@
 
 #include "app/commands/replay_options.h"
 #include "app/evaluation/evaluate_views.h"
+#include "app/pipeline/patch_mesh.h"
 #include "app/pipeline/pipeline.h"
 #include "app/pipeline/replay_report.h"
 #include "capture/pose/trajectory.h"
@@ -93,11 +94,22 @@ std::vector<EvaluationSummary> evaluate_held_out(const capture::Session& session
                         [&](const ComparedView&) { progress.show(++done); });
 }
 
+/// The session's mesh, refined to the pictures' resolution when patches are texels.
+core::Mesh read_patch_mesh(const capture::Session& session, const ReplayOptions& options) {
+  core::Mesh mesh = read_session_mesh(session);
+  if (options.patches == "vertex") return mesh;
+  const auto poses =
+      make_pose_estimator(session, options.session.pose_source, options.session.gate);
+  const auto footprint_m = pixel_footprint_m(session, mesh, *poses);
+  if (!footprint_m) return mesh;  // the replay itself will say why no frame is posed
+  return texel_mesh(mesh, *footprint_m, options.texel_px);
+}
+
 void run_replay(const ReplayOptions& options, const CommandContext& context) {
   // Open everything that may be wrong before the long work.
   const capture::Session session = capture::open_session(options.session.folder);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
-  const core::Mesh mesh = read_session_mesh(session);
+  const core::Mesh mesh = read_patch_mesh(session, options);
   auto frames = capture::open_frames(session, options.session.start, options.session.end);
   const std::optional<int> frame_count = frames->frame_count();
   std::unique_ptr<render::Context> gl;

@@ -61,8 +61,15 @@ void add_replay_options(CLI::App& command, ReplayOptions& options) {
   add_choice(command, "--terms", options.iwls.terms, kTerms, "Polynomial terms per centre");
   command.add_flag("--faithful", options.iwls.faithful,
                    "Exactly the paper's rules: 3 terms, no ridge");
-  command.add_option("--patches", options.patches, "What a patch is")
-      ->check(CLI::IsMember({"vertex"}))
+  command
+      .add_option("--patches", options.patches,
+                  "vertex: one patch per vertex; texel: as fine as the pictures resolve")
+      ->check(CLI::IsMember({"vertex", "texel"}))
+      ->capture_default_str();
+  command
+      .add_option("--texel-px", options.texel_px,
+                  "Largest distance between neighbouring texel patches, pixels")
+      ->check(CLI::PositiveNumber)
       ->capture_default_str();
   command
       .add_option("--hold-out", options.session.hold_out,

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "app/pipeline/patch_mesh.h"
+
+#include "core/mesh/refine_mesh.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <vector>
+
+namespace sheen::app {
+namespace {
+
+constexpr int kProbedFrames = 90;
+constexpr std::size_t kProbedPoses = 9;
+constexpr std::size_t kMostPatches = 2'000'000;
+
+}  // namespace
+
+std::optional<double> pixel_footprint_m(const capture::Session& session, const core::Mesh& mesh,
+                                        capture::PoseEstimator& poses) {
+  Eigen::AlignedBox3f bounds;
+  for (const auto& position : mesh.positions) bounds.extend(position);
+  const Eigen::Vector3d centre_in_stage =
+      session.stage_from_object * bounds.center().cast<double>();
+
+  std::vector<double> distances_m;
+  const auto frames = capture::open_frames(session, 0, kProbedFrames);
+  while (distances_m.size() < kProbedPoses) {
+    const auto frame = frames->next();
+    if (!frame) break;
+    const auto result = poses.estimate(*frame);
+    if (const auto* pose = std::get_if<capture::FramePose>(&result)) {
+      distances_m.push_back((pose->camera_from_stage * centre_in_stage).norm());
+    }
+  }
+  if (distances_m.empty()) return std::nullopt;
+  const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
+  std::nth_element(distances_m.begin(), middle, distances_m.end());
+  return *middle / session.camera.intrinsics().focal_px.x();
+}
+
+core::Mesh texel_mesh(const core::Mesh& mesh, double pixel_footprint_m, double spacing_px) {
+  return core::refine_mesh(mesh, static_cast<float>(pixel_footprint_m * spacing_px), kMostPatches);
+}
+
+}  // namespace sheen::app

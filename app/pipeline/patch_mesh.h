@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "app/pipeline/session_parts.h"
+#include "core/mesh/mesh.h"
+
+#include <optional>
+
+namespace sheen::app {
+
+/// Size of a pixel on the object, metres: distance over focal length, median over the first posed
+/// frames. Nothing when none of them gets a pose.
+std::optional<double> pixel_footprint_m(const capture::Session& session, const core::Mesh& mesh,
+                                        capture::PoseEstimator& poses);
+
+/// A mesh whose vertices stand as close as the pictures resolve: no edge longer than `spacing_px`
+/// pixels.
+core::Mesh texel_mesh(const core::Mesh& mesh, double pixel_footprint_m, double spacing_px);
+
+}  // namespace sheen::app
