@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace sheen::bench {
+
+/// Gets one short line when a part of a study begins.
+using Progress = std::function<void(const std::string&)>;
+
+/// What every program of the bench understands.
+struct ProgramOptions {
+  std::filesystem::path output = "out/bench";  ///< folder for CSV files
+  bool quick = false;                          ///< fewer points and settings: seconds, for tests
+  std::uint64_t seed = 1;
+};
+
+/// Parses the arguments, calls `body` and turns exceptions into exit codes: 0 done, 1 failed while
+/// running, 2 bad arguments. Progress goes to stderr.
+int run_program(int argc, char** argv, const std::string& description,
+                const std::function<void(const ProgramOptions&, const Progress&)>& body);
+
+}  // namespace sheen::bench
