@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+#include "bench/stability/stability_suite.h"
+#include "bench/stability/stability_tables.h"
+
+#include <fmt/core.h>
+
+using namespace sheen::bench;
+
+int main(int argc, char** argv) {
+  return run_program(argc, argv, "Where each method fails: few, noisy, one-sided, wrong samples",
+                     [](const ProgramOptions& options, const Progress& progress) {
+                       const auto rows = run_stability(stability_options(options), progress);
+                       // Store everything, show what can be read.
+                       write_csv(options.output / "stability.csv", all_rows(rows));
+                       write_csv(options.output / "monotonicity.csv", monotonicity(rows));
+                       for (const Table& table : error_against_samples(rows))
+                         fmt::print("{}\n", markdown(table));
+                       fmt::print("{}\n", markdown(error_against_settings(rows, ViewSet::uni)));
+                       fmt::print("{}\n", markdown(error_against_settings(rows, ViewSet::arc)));
+                       fmt::print("{}\n", markdown(extrapolation(rows)));
+                       fmt::print("{}\n", markdown(monotonicity(rows)));
+                       fmt::print("{}\n", markdown(monotonicity_of(rows, default_method_name())));
+                     });
+}
