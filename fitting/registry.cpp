@@ -7,6 +7,8 @@
 #include "fitting/mean/model_codec.h"
 #include "fitting/model_file/model_codec.h"
 #include "fitting/sparse/model_codec.h"
+#include "fitting/spherical_harmonics/harmonics_representation.h"
+#include "fitting/spherical_harmonics/model_codec.h"
 
 #include <array>
 #include <stdexcept>
@@ -26,16 +28,25 @@ std::unique_ptr<Representation> make_mean(const Neighbours& neighbours,
   return mean::make_mean_representation(neighbours, options.threads);
 }
 
+std::unique_ptr<Representation> make_harmonics(const Neighbours& neighbours,
+                                               const RepresentationOptions& options) {
+  return spherical_harmonics::make_harmonics_representation(neighbours, options.spherical_harmonics,
+                                                            options.threads);
+}
+
 struct Entry {
   const char* name;
   std::unique_ptr<Representation> (*make)(const Neighbours&, const RepresentationOptions&);
 };
 
-constexpr std::array kRepresentations{Entry{"iwls", make_iwls}, Entry{"mean", make_mean}};
+constexpr std::array kRepresentations{Entry{"iwls", make_iwls}, Entry{"mean", make_mean},
+                                      Entry{"sh", make_harmonics}};
 
-constexpr std::array kCodecs{ModelCodec{"iwls", iwls::encode_model, iwls::decode_model},
-                             ModelCodec{"mean", mean::encode_model, mean::decode_model},
-                             ModelCodec{"sparse", sparse::encode_model, sparse::decode_model}};
+constexpr std::array kCodecs{
+    ModelCodec{"iwls", iwls::encode_model, iwls::decode_model},
+    ModelCodec{"mean", mean::encode_model, mean::decode_model},
+    ModelCodec{"sh", spherical_harmonics::encode_model, spherical_harmonics::decode_model},
+    ModelCodec{"sparse", sparse::encode_model, sparse::decode_model}};
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include "core/mesh/neighbours.h"
 #include "fitting/iwls/options.h"
 #include "fitting/representation.h"
+#include "fitting/spherical_harmonics/options.h"
 
 #include <memory>
 #include <string>
@@ -15,6 +16,7 @@ namespace sheen::fitting {
 struct RepresentationOptions {
   iwls::Options iwls;
   int threads = 1;  ///< >= 1
+  spherical_harmonics::Options spherical_harmonics{};
 };
 
 /// Names in the order users should see them; the first is the default.

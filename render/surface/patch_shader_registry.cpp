@@ -3,6 +3,7 @@
 #include "render/iwls/iwls_patch_shader.h"
 #include "render/mean/mean_patch_shader.h"
 #include "render/sparse/sparse_patch_shader.h"
+#include "render/spherical_harmonics/harmonics_patch_shader.h"
 #include "render/surface/patch_shader.h"
 
 #include <string>
@@ -18,6 +19,7 @@ using Factory = std::unique_ptr<PatchShader> (*)(const gl::Functions&, const fit
 constexpr std::pair<std::string_view, Factory> kPatchShaders[] = {
     {"iwls", iwls::make_patch_shader},
     {"mean", mean::make_patch_shader},
+    {"sh", spherical_harmonics::make_patch_shader},
     {"sparse", sparse::make_patch_shader},
 };
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/representation.h"
 
-#include "fitting/mean/mean_light_field.h"
+#include "fitting/model_file/model_codec.h"
+#include "fitting/sparse/light_field_model.h"
 #include "tests/fitting/samples_for_tests.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 
 namespace sheen::fitting {
@@ -28,14 +28,36 @@ core::SampleBatch random_view(std::mt19937& random) {
   return batch;
 }
 
+// Everything a model holds, as its part of the model file.
 std::string bytes_of(const LightField& light_field) {
-  std::span<const Eigen::half> halves;
-  if (const auto* model = dynamic_cast<const iwls::LightFieldModel*>(&light_field)) {
-    halves = model->coefficients();
-  } else {
-    halves = dynamic_cast<const mean::MeanLightField&>(light_field).coefficients();
+  std::string all;
+  for (const ModelCodec& codec : model_codecs()) {
+    if (codec.representation != light_field.representation()) continue;
+    const ModelPart part = codec.encode(light_field);
+    for (const auto& [name, bytes] : part.arrays) {
+      all.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    }
   }
-  return {reinterpret_cast<const char*>(halves.data()), halves.size_bytes()};
+  return all;
+}
+
+// What a model holds of each patch.
+std::vector<std::string> patches_of(const LightField& light_field) {
+  std::vector<std::string> patches(kPatches);
+  if (const auto* model = dynamic_cast<const sparse::LightFieldModel*>(&light_field)) {
+    for (std::size_t i = 0; i < kPatches; ++i) {
+      const sparse::PatchModel patch = model->patch(i);
+      patches[i].append(reinterpret_cast<const char*>(patch.atom.data()), patch.bump_count);
+      patches[i].append(reinterpret_cast<const char*>(patch.coefficient.data()),
+                        patch.term_count() * sizeof(patch.coefficient[0]));
+    }
+    return patches;
+  }
+  // All others keep the same number of bytes for every patch.
+  const std::string all = bytes_of(light_field);
+  const std::size_t stride = all.size() / kPatches;
+  for (std::size_t i = 0; i < kPatches; ++i) patches[i] = all.substr(i * stride, stride);
+  return patches;
 }
 
 std::vector<RepresentationOptions> candidates(int threads) {
@@ -82,16 +104,13 @@ TEST(Representation, UpdatesListExactlyWhatChanged) {
       std::mt19937 random(62);
       const auto representation = make_representation(name, testing::isolated(kPatches), options);
       const LightField& model = representation->light_field();
-      std::string before = bytes_of(model);
+      std::vector<std::string> before = patches_of(model);
       std::vector<std::uint8_t> observed_before = model.observed();
       const auto expect_exact = [&](const ModelUpdate& update) {
-        const std::string after = bytes_of(model);
-        const std::size_t stride = after.size() / kPatches;
+        const std::vector<std::string> after = patches_of(model);
         std::vector<std::uint32_t> changed;
         for (std::uint32_t patch = 0; patch < kPatches; ++patch) {
-          const std::size_t at = patch * stride;
-          if (std::memcmp(after.data() + at, before.data() + at, stride) != 0 ||
-              model.observed()[patch] != observed_before[patch]) {
+          if (after[patch] != before[patch] || model.observed()[patch] != observed_before[patch]) {
             changed.push_back(patch);
           }
         }

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+#include "fitting/spherical_harmonics/harmonics_representation.h"
+
+#include "core/concurrency/parallel_for.h"
+#include "fitting/samples/change_list.h"
+#include "fitting/samples/sample.h"
+#include "fitting/spherical_harmonics/basis.h"
+#include "fitting/spherical_harmonics/light_field_model.h"
+#include "fitting/unseen/fill_unseen.h"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cassert>
+#include <cmath>
+
+namespace sheen::fitting::spherical_harmonics {
+namespace {
+
+template <std::size_t kTerms>
+using Coefficients = Eigen::Matrix<double, static_cast<int>(kTerms), 3, Eigen::RowMajor>;
+
+/// Sum Y Y^T and sum Y f^T over the samples of a patch: as good as the samples themselves.
+template <std::size_t kTerms>
+struct NormalEquations {
+  std::array<double, kTerms*(kTerms + 1) / 2> A{};  // upper triangle, column by column
+  Coefficients<kTerms> g = Coefficients<kTerms>::Zero();
+
+  void add(const Sample& sample) {
+    const double z = std::sqrt(std::max(0.0, 1.0 - sample.u * sample.u - sample.v * sample.v));
+    const auto Y = basis<kTerms>(sample.u, sample.v, z);
+    const Eigen::RowVector3d rgb(sample.rgb[0], sample.rgb[1], sample.rgb[2]);
+    std::size_t entry = 0;
+    for (std::size_t col = 0; col < kTerms; ++col) {
+      for (std::size_t row = 0; row <= col; ++row) A[entry++] += Y[col] * Y[row];
+      g.row(static_cast<Eigen::Index>(col)) += Y[col] * rgb;
+    }
+  }
+
+  // The constant term has at least one sample and all others the ridge: positive definite.
+  [[nodiscard]] Coefficients<kTerms> solve(double ridge) const {
+    Eigen::Matrix<double, static_cast<int>(kTerms), static_cast<int>(kTerms)> lower;
+    std::size_t entry = 0;
+    for (Eigen::Index col = 0; col < lower.cols(); ++col) {
+      for (Eigen::Index row = 0; row <= col; ++row) lower(col, row) = A[entry++];
+      if (col > 0) lower(col, col) += ridge;
+    }
+    Coefficients<kTerms> theta = g;
+    const Eigen::LLT<Eigen::Ref<decltype(lower)>, Eigen::Lower> factors(lower);
+    factors.solveInPlace(theta);
+    return theta;
+  }
+
+  [[nodiscard]] Eigen::Vector3f mean() const {
+    return (g.row(0).transpose() * (kY00 / A[0])).template cast<float>();
+  }
+};
+
+template <std::size_t kTerms>
+class HarmonicsRepresentation final : public Representation {
+ public:
+  HarmonicsRepresentation(const core::VertexNeighbours& neighbours, const Options& options,
+                          int threads)
+      : neighbours_(neighbours),
+        options_(options),
+        threads_(threads),
+        systems_(neighbours.vertex_count()),
+        model_(options.degree, neighbours.vertex_count()) {}
+
+  const ModelUpdate& absorb(const core::SampleBatch& batch) override;
+  const ModelUpdate& finish() override;
+  [[nodiscard]] const LightField& light_field() const override { return model_; }
+  [[nodiscard]] FitStatistics statistics() const override { return statistics_; }
+
+ private:
+  // Returns whether the model changed.
+  bool absorb_sample(std::size_t patch_idx, const Sample& sample);
+
+  core::VertexNeighbours neighbours_;
+  Options options_;
+  int threads_;
+  // Made with a patch's first sample: 1.5 kB each at degree 3, nothing for what is never seen.
+  std::vector<std::unique_ptr<NormalEquations<kTerms>>> systems_;
+  LightFieldModel model_;
+  FitStatistics statistics_;
+  ChangeList changes_;
+  ModelUpdate update_;
+};
+
+template <std::size_t kTerms>
+bool HarmonicsRepresentation<kTerms>::absorb_sample(std::size_t patch_idx, const Sample& sample) {
+  auto& system = systems_[patch_idx];
+  if (!system) system = std::make_unique<NormalEquations<kTerms>>();
+  system->add(sample);
+  const Coefficients<kTerms> theta = system->solve(options_.ridge);
+  bool changed = model_.store_observed(patch_idx, true);
+  changed |= model_.store(patch_idx, {theta.data(), static_cast<std::size_t>(theta.size())});
+  return changed;
+}
+
+template <std::size_t kTerms>
+const ModelUpdate& HarmonicsRepresentation<kTerms>::absorb(const core::SampleBatch& batch) {
+  changes_.reset(batch.size());
+  std::atomic<std::size_t> used{0};
+  core::parallel_for(batch.size(), threads_, [&](std::size_t begin, std::size_t end) {
+    std::size_t used_here = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto sample = usable_sample(batch, i);
+      if (!sample) continue;
+      ++used_here;
+      changes_.mark(i, absorb_sample(batch.patch[i], *sample));
+    }
+    used += used_here;
+  });
+  statistics_.samples += used;
+  statistics_.fits += used;
+  statistics_.patch_views += used;
+  changes_.list([&](std::size_t i) { return batch.patch[i]; }, update_);
+  return update_;
+}
+
+template <std::size_t kTerms>
+const ModelUpdate& HarmonicsRepresentation<kTerms>::finish() {
+  // Means of the samples, not of the model, whose far side may be anything.
+  std::vector<Eigen::Vector3f> colours(model_.patch_count(), Eigen::Vector3f::Zero());
+  for (std::size_t patch = 0; patch < colours.size(); ++patch) {
+    if (systems_[patch]) colours[patch] = systems_[patch]->mean();
+  }
+  fill_unseen(neighbours_, model_.observed(), colours);
+  changes_.reset(colours.size());
+  for (std::size_t patch = 0; patch < colours.size(); ++patch) {
+    if (!systems_[patch]) changes_.mark(patch, model_.store_constant(patch, colours[patch]));
+  }
+  changes_.list([](std::size_t patch) { return static_cast<std::uint32_t>(patch); }, update_);
+  return update_;
+}
+
+}  // namespace
+
+std::unique_ptr<Representation> make_harmonics_representation(
+    const core::VertexNeighbours& neighbours, const Options& options, int threads) {
+  options.check();
+  assert(threads >= 1);
+  switch (options.degree) {
+    case 1:
+      return std::make_unique<HarmonicsRepresentation<4>>(neighbours, options, threads);
+    case 2:
+      return std::make_unique<HarmonicsRepresentation<9>>(neighbours, options, threads);
+    default:
+      return std::make_unique<HarmonicsRepresentation<16>>(neighbours, options, threads);
+  }
+}
+
+}  // namespace sheen::fitting::spherical_harmonics

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "render/surface/patch_shader.h"
+
+#include <memory>
+
+namespace sheen::render::spherical_harmonics {
+
+/// For light fields whose representation is "sh".
+std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
+                                               const fitting::LightField& light_field);
+
+}  // namespace sheen::render::spherical_harmonics
