@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "core/samples/vertex_view.h"
 #include "render/gl/offscreen_target.h"
 #include "render/surface/blind_pixels.h"
 #include "render/surface/patch_shader.h"
@@ -22,7 +23,7 @@ class GlSurfaceRenderer final : public SurfaceRenderer {
                     const fitting::LightField& light_field)
       : context_(context),
         gl_(gl::load_functions(made_current(context))),
-        patches_(make_patch_shader(gl_, light_field)),
+        patches_(make_patch_shader(gl_, mesh, light_field)),
         pass_(gl_, mesh, patches_->glsl()),
         target_(gl_, true) {
     assert(light_field.patch_count() == mesh.positions.size());
@@ -44,6 +45,7 @@ class GlSurfaceRenderer final : public SurfaceRenderer {
     // Draw.
     context_.make_current();
     const GLuint framebuffer = target_.framebuffer(camera.width_px(), camera.height_px());
+    patches_->look_from(core::eye_in_object(camera_from_object));
     patches_->bind();
     pass_.draw(framebuffer, camera, camera_from_object);
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/mesh/mesh.h"
 #include "fitting/light_field.h"
 #include "render/gl/functions.h"
+
+#include <Eigen/Core>
 
 #include <cstdint>
 #include <memory>
@@ -25,6 +28,10 @@ class PatchShader {
   /// Returns the bytes handed to OpenGL.
   virtual std::size_t upload(std::span<const std::uint32_t> patches) = 0;
 
+  /// Called before every draw with the eye in the object frame (metres), for shaders that depend on
+  /// the view on this side of OpenGL.
+  virtual void look_from(const Eigen::Vector3f& /*eye*/) {}
+
   /// Makes the coefficients available to the next draw.
   virtual void bind() const = 0;
 };
@@ -33,6 +40,12 @@ class PatchShader {
 /// must outlive it. Throws core::Error (run_failed) when the representation cannot be drawn, or is
 /// too large for the driver.
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
+                                               const fitting::LightField& light_field);
+
+/// The same, and for a representation without a shader of its own one that shows what the CPU
+/// evaluates for each view (render/evaluated). `mesh` must outlive it too: its vertices are the
+/// patches.
+std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl, const core::Mesh& mesh,
                                                const fitting::LightField& light_field);
 
 }  // namespace sheen::render

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/diagnostics/error.h"
+#include "render/evaluated/evaluated_patch_shader.h"
 #include "render/iwls/iwls_patch_shader.h"
 #include "render/mean/mean_patch_shader.h"
 #include "render/sparse/sparse_patch_shader.h"
@@ -23,16 +24,28 @@ constexpr std::pair<std::string_view, Factory> kPatchShaders[] = {
     {"sparse", sparse::make_patch_shader},
 };
 
+// Null when there is none.
+Factory factory_of(const fitting::LightField& light_field) {
+  for (const auto& [name, make] : kPatchShaders) {
+    if (name == light_field.representation()) return make;
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
                                                const fitting::LightField& light_field) {
-  for (const auto& [name, make] : kPatchShaders) {
-    if (name == light_field.representation()) return make(gl, light_field);
-  }
+  if (const Factory make = factory_of(light_field)) return make(gl, light_field);
   throw core::Error(core::Error::Kind::run_failed,
                     "representation " + std::string(light_field.representation()),
                     "has no patch shader in this program", "use the reference renderer");
+}
+
+std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl, const core::Mesh& mesh,
+                                               const fitting::LightField& light_field) {
+  if (const Factory make = factory_of(light_field)) return make(gl, light_field);
+  return evaluated::make_patch_shader(gl, mesh, light_field);
 }
 
 }  // namespace sheen::render

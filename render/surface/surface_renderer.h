@@ -22,7 +22,8 @@ struct RenderedView {
 };
 
 /// Draws one light field on its mesh. Light fields are drawn through the registry of patch shaders
-/// (render/surface/patch_shader.h), one per representation.
+/// (render/surface/patch_shader.h), one per representation; those without one are evaluated on the
+/// CPU for every view.
 class SurfaceRenderer {
  public:
   virtual ~SurfaceRenderer() = default;
@@ -39,8 +40,7 @@ class SurfaceRenderer {
 /// than 0.05 pixels triangles are tessellated, into at most 64 segments per edge. Pixels no ray of
 /// the lens model reaches stay black. May be called from any thread, one at a time; the context is
 /// made current there. Context, mesh and light field must outlive the renderer. Throws core::Error
-/// (run_failed) for representations without a patch shader and for models or pictures too large for
-/// the driver.
+/// (run_failed) for models or pictures too large for the driver.
 std::unique_ptr<SurfaceRenderer> make_gl_surface_renderer(Context& context, const core::Mesh& mesh,
                                                           const fitting::LightField& light_field);
 
