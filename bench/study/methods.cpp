@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 namespace sheen::bench {
 
 using fitting::iwls::Construction;
@@ -26,6 +28,12 @@ Method iwls_method(Construction construction, bool faithful, int centers, int te
   return {name, "iwls", options};
 }
 
+Method harmonics_method(int degree) {
+  fitting::RepresentationOptions options;
+  options.spherical_harmonics.degree = degree;
+  return {fmt::format("sh {}", degree), "sh", options};
+}
+
 std::vector<Method> all_methods() {
   std::vector<Method> methods;
   for (const bool faithful : {true, false}) {
@@ -38,14 +46,19 @@ std::vector<Method> all_methods() {
   methods.push_back(iwls_method(Construction::batch, false, 16, 1));
   methods.push_back(iwls_method(Construction::batch, false, 16, 6));
   for (const std::string& name : fitting::representation_names()) {
-    if (name != "iwls") methods.push_back({name, name, {}});
+    if (name == "sh") {
+      for (int degree = 1; degree <= 3; ++degree) methods.push_back(harmonics_method(degree));
+    } else if (name != "iwls") {
+      methods.push_back({name, name, {}});
+    }
   }
   return methods;
 }
 
 std::string default_method_name() {
-  const std::string first = fitting::representation_names().front();
-  return first == "iwls" ? iwls_method(Construction::quadtree, false).name : first;
+  const std::vector<std::string> names = fitting::representation_names();
+  const bool has_sparse = std::find(names.begin(), names.end(), "sparse") != names.end();
+  return has_sparse ? "sparse" : iwls_method(Construction::quadtree, false).name;
 }
 
 }  // namespace sheen::bench

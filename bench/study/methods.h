@@ -23,11 +23,15 @@ struct Method {
 Method iwls_method(fitting::iwls::Construction construction, bool faithful, int centers = 16,
                    int terms = 3, fitting::iwls::Layout layout = fitting::iwls::Layout::grid);
 
+/// Spherical harmonics of degree 1, 2 or 3.
+Method harmonics_method(int degree);
+
 /// Everything the studies compare: the constructions of IWLS, faithful and with the ridge, batch
-/// with one and six terms, and every other representation of the registry by its name.
+/// with one and six terms, spherical harmonics of degrees 1 to 3, and every other representation of
+/// the registry by its name.
 std::vector<Method> all_methods();
 
-/// Name of the method that a user gets who asks for nothing.
+/// Name of the method whose promises are checked: "sparse" where the registry has it.
 std::string default_method_name();
 
 }  // namespace sheen::bench

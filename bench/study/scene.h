@@ -17,7 +17,7 @@ struct SceneOptions {
   std::size_t samples_per_point = 96;  ///< on average; the walk is as long as that takes
   /// The pose error is one per frame, as a tracker's is. Exposed so that the mean colour alone
   /// gives about 28 dB.
-  Corruption corruption{.exposure = 0.6f};
+  Corruption corruption{.exposure = 0.5f};
   std::uint64_t seed = 1;
 };
 
