@@ -6,7 +6,10 @@
 #include "fitting/mean/mean_representation.h"
 #include "fitting/mean/model_codec.h"
 #include "fitting/model_file/model_codec.h"
+#include "fitting/nearest_views/model_codec.h"
+#include "fitting/nearest_views/nearest_representation.h"
 #include "fitting/sparse/model_codec.h"
+#include "fitting/sparse/sparse_representation.h"
 #include "fitting/spherical_harmonics/harmonics_representation.h"
 #include "fitting/spherical_harmonics/model_codec.h"
 
@@ -34,17 +37,29 @@ std::unique_ptr<Representation> make_harmonics(const Neighbours& neighbours,
                                                             options.threads);
 }
 
+std::unique_ptr<Representation> make_nearest_views(const Neighbours& neighbours,
+                                                   const RepresentationOptions& options) {
+  return nearest_views::make_nearest_representation(neighbours, options.threads);
+}
+
+std::unique_ptr<Representation> make_sparse(const Neighbours& neighbours,
+                                            const RepresentationOptions& options) {
+  return sparse::make_sparse_representation(neighbours, options.sparse, options.threads);
+}
+
 struct Entry {
   const char* name;
   std::unique_ptr<Representation> (*make)(const Neighbours&, const RepresentationOptions&);
 };
 
 constexpr std::array kRepresentations{Entry{"iwls", make_iwls}, Entry{"mean", make_mean},
-                                      Entry{"sh", make_harmonics}};
+                                      Entry{"sh", make_harmonics}, Entry{"sparse", make_sparse},
+                                      Entry{"nearest-views", make_nearest_views}};
 
 constexpr std::array kCodecs{
     ModelCodec{"iwls", iwls::encode_model, iwls::decode_model},
     ModelCodec{"mean", mean::encode_model, mean::decode_model},
+    ModelCodec{"nearest-views", nearest_views::encode_model, nearest_views::decode_model},
     ModelCodec{"sh", spherical_harmonics::encode_model, spherical_harmonics::decode_model},
     ModelCodec{"sparse", sparse::encode_model, sparse::decode_model}};
 

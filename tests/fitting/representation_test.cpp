@@ -2,6 +2,7 @@
 #include "fitting/representation.h"
 
 #include "fitting/model_file/model_codec.h"
+#include "fitting/nearest_views/light_field_model.h"
 #include "fitting/sparse/light_field_model.h"
 #include "tests/fitting/samples_for_tests.h"
 
@@ -50,6 +51,13 @@ std::vector<std::string> patches_of(const LightField& light_field) {
       patches[i].append(reinterpret_cast<const char*>(patch.atom.data()), patch.bump_count);
       patches[i].append(reinterpret_cast<const char*>(patch.coefficient.data()),
                         patch.term_count() * sizeof(patch.coefficient[0]));
+    }
+    return patches;
+  }
+  if (const auto* model = dynamic_cast<const nearest_views::LightFieldModel*>(&light_field)) {
+    for (std::size_t i = 0; i < kPatches; ++i) {
+      const auto bytes = std::as_bytes(model->samples(i));
+      patches[i].assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     }
     return patches;
   }
