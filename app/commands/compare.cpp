@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include "app/commands/compare.h"
+
+#include "app/commands/session_options.h"
+#include "app/comparison/comparison_files.h"
+#include "app/comparison/comparison_tables.h"
+#include "app/interrupt.h"
+#include "core/diagnostics/error.h"
+#include "core/files/staged_output.h"
+
+#include <fmt/format.h>
+
+#include <set>
+
+namespace sheen::app {
+namespace {
+
+constexpr int kDefaultHoldOut = 5;
+
+struct CompareOptions {
+  std::vector<std::filesystem::path> folders;
+  std::filesystem::path output;
+  std::vector<std::string> only;  ///< names of candidates; empty: all
+  SessionOptions session;         ///< `folder` is set for each of `folders` in turn
+};
+
+/// Counts sessions and candidates as they are done: a session's observations are one step, each
+/// candidate on it another.
+class Steps {
+ public:
+  Steps(const CommandContext& context, std::size_t sessions, std::size_t candidates)
+      : progress_(context.progress("comparing", static_cast<int>(sessions * (candidates + 1)))) {}
+
+  void doing(const std::string& what) { progress_.show(done_, what); }
+  void done(const std::string& what) { progress_.show(++done_, what); }
+
+ private:
+  Progress progress_;
+  int done_ = 0;
+};
+
+Observations observe(const SessionOptions& options, const std::string& name, int threads,
+                     Steps& steps) {
+  auto observations = observe_session(options, threads, [&](const FrameReport& frame) {
+    steps.doing(fmt::format("{}: frame {}", name, frame.frames_read));
+  });
+  steps.done(fmt::format("{}: {} frames observed", name, observations.views.size()));
+  return observations;
+}
+
+void compare_on(const Observations& observations, const std::string& session,
+                const std::vector<Candidate>& candidates, render::Context& gl,
+                const std::filesystem::path& scratch, int threads, Steps& steps,
+                Comparison& comparison) {
+  const std::size_t first_row = comparison.rows.size();
+  for (const Candidate& candidate : candidates) {
+    throw_if_interrupted();
+    steps.doing(session + ": " + candidate.name);
+    try {
+      comparison.rows.push_back({session,
+                                 candidate,
+                                 measure_candidate(candidate, observations, gl, scratch, threads),
+                                 {}});
+    } catch (const core::Error& error) {
+      // A model too large for the driver must not take hours of other figures with it.
+      if (error.kind() != core::Error::Kind::run_failed) throw;
+      comparison.left_out.push_back({session, candidate.name, error.what()});
+    }
+    steps.done(session + ": " + candidate.name);
+  }
+  mark_fronts(std::span(comparison.rows).subspan(first_row));
+}
+
+Comparison compare_sessions(const CompareOptions& options, const CommandContext& context,
+                            const std::filesystem::path& scratch) {
+  const std::vector<Candidate> candidates = candidates_named(options.only);
+  const std::vector<std::string> names = session_names(options.folders);
+  const auto gl = render::make_osmesa_context();
+  Comparison comparison;
+  Steps steps(context, names.size(), candidates.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    SessionOptions session = options.session;
+    session.folder = options.folders[i];
+    const Observations observations = observe(session, names[i], context.threads, steps);
+    comparison.sessions.push_back({.name = names[i],
+                                   .folder = session.folder.string(),
+                                   .fitted_frames = observations.views.size(),
+                                   .held_out_views = observations.held_out.size(),
+                                   .has_own_held_out = observations.has_own_held_out});
+    compare_on(observations, names[i], candidates, *gl, scratch, context.threads, steps,
+               comparison);
+  }
+  return comparison;
+}
+
+void check_was_measured(const Comparison& comparison) {
+  if (!comparison.rows.empty()) return;
+  const LeftOutCandidate& first = comparison.left_out.front();
+  throw core::Error(core::Error::Kind::run_failed, first.session, "no candidate could be measured",
+                    first.reason);
+}
+
+/// Learns what may be wrong with the sessions before the long work.
+void check_sessions(const std::vector<std::filesystem::path>& folders,
+                    const CommandContext& context) {
+  std::set<std::filesystem::path> seen;
+  for (const auto& folder : folders) {
+    const capture::Session session = capture::open_session(folder);
+    for (const std::string& warning : session.warnings) context.note("note: " + warning);
+    if (!seen.insert(std::filesystem::weakly_canonical(folder)).second) {
+      throw core::bad_input(folder, "is given twice", "name every session once");
+    }
+  }
+}
+
+void run_compare(const CompareOptions& options, const CommandContext& context) {
+  check_sessions(options.folders, context);
+  const core::StagedOutput staging(options.output / "comparison");
+  std::filesystem::create_directory(staging.path());
+
+  // Measure.
+  const Comparison comparison = compare_sessions(options, context, staging.path() / "scratch.glb");
+  check_was_measured(comparison);
+
+  // Write and tell.
+  const auto advice = advise(averages(comparison), comparison.sessions.size());
+  const nlohmann::ordered_json document = to_json(comparison, advice);
+  const ComparisonFiles files =
+      write_comparison(options.output, staging.path(), to_csv(comparison), document);
+  for (const std::string& note : files.notes) context.note("note: " + note);
+  std::string text = to_text(comparison);
+  for (const auto& path : files.written) text += "written  " + path.string() + "\n";
+  if (advice) text += "\n" + advice->sentence + "\n";
+  context.publish(document, text);
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& program, CommandContext& context) {
+  auto options = std::make_shared<CompareOptions>();
+  options->session.hold_out = kDefaultHoldOut;
+  CLI::App* command = program.add_subcommand(
+      "compare", "Measure every representation on the same recordings: accuracy, time, bytes");
+  command->footer(
+      "All candidates take the same samples and are drawn on the same views that none has seen:\n"
+      "SESSION/held_out where there is one, else every N-th frame. DIR receives compare.csv,\n"
+      "charts (PNG, SVG) and compare.html, a page that needs no network.\n"
+      "Example:\n  sheen compare sample_data/glossy -o comparison --only mean,sh3,quadtree");
+  command->add_option("sessions", options->folders, "Session folders")
+      ->required()
+      ->type_name("SESSION...");
+  command->add_option("-o,--output", options->output, "Folder to write to")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option("--only", options->only,
+                   fmt::format("Only these of {}", fmt::join(candidate_names(), ", ")))
+      ->delimiter(',')
+      ->check(CLI::IsMember(candidate_names()).description(""))
+      ->type_name("NAME,NAME");
+  command
+      ->add_option("--hold-out", options->session.hold_out,
+                   "Keep every N-th frame out of the fits and measure on those")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  add_session_options(*command, options->session);
+  add_common_options(*command, context);
+  command->callback([options, &context] { run_compare(*options, context); });
+}
+
+}  // namespace sheen::app

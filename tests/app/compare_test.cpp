@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+// What `sheen compare` measures is complete and finite, its fronts are the points nobody beats, and
+// its advice follows from its figures.
+#include "app/comparison/advice.h"
+#include "app/comparison/pareto.h"
+#include "tests/app/program.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+#include <sstream>
+
+namespace sheen::tests {
+namespace {
+
+using app::CostBenefit;
+namespace fs = std::filesystem;
+
+std::vector<std::uint8_t> front(const std::vector<CostBenefit>& points) {
+  return app::pareto_front(points);
+}
+
+TEST(ParetoFront, HoldsExactlyThePointsNobodyBeats) {
+  // By hand: (1,1), (2,3), (4,4) rise together. (2,2) costs as much as (2,3) and is worth less,
+  // (3,3) is worth as much and costs more, (5,1) is beaten by all.
+  const std::vector<CostBenefit> points{{1, 1}, {2, 3}, {4, 4}, {2, 2}, {3, 3}, {5, 1}};
+  EXPECT_EQ(front(points), (std::vector<std::uint8_t>{1, 1, 1, 0, 0, 0}));
+}
+
+TEST(ParetoFront, KeepsEqualPointsAndRefusesNumbersThatAreNone) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  // Neither twin is better in anything. NaN compares to nobody; a point of infinite worth must not
+  // drive the others off.
+  const std::vector<CostBenefit> points{{1, 1}, {1, 1}, {kNan, 9}, {0, kNan}, {0, kInfinite}};
+  EXPECT_EQ(front(points), (std::vector<std::uint8_t>{1, 1, 0, 0, 0}));
+  EXPECT_TRUE(front({}).empty());
+}
+
+TEST(ParetoFront, OfRandomPointsRisesAndLeavesNobodyOutWithoutCause) {
+  constexpr unsigned kSeed = 7;
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed);
+  std::uniform_int_distribution<int> coordinate(0, 20);  // coarse, so that ties happen
+  std::vector<CostBenefit> points(60);
+  for (auto& point : points) {
+    point = {static_cast<double>(coordinate(random)), static_cast<double>(coordinate(random))};
+  }
+  // Sorted by cost and, at equal cost, by falling benefit, a point is on the front if and only if
+  // it is worth more than everything before it, or equals the last point of the front.
+  std::map<std::pair<double, double>, bool> expected;
+  for (const auto& point : points) expected[{point.cost, -point.benefit}] = false;
+  double best = -1;
+  for (auto& [key, on_front] : expected) {
+    on_front = -key.second > best;
+    best = std::max(best, -key.second);
+  }
+  const auto flags = front(points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(flags[i] != 0, (expected[{points[i].cost, -points[i].benefit}]))
+        << points[i].cost << ", " << points[i].benefit;
+  }
+}
+
+app::ComparedCandidate figures(const char* name, double psnr_db, std::uintmax_t bytes) {
+  app::ComparedCandidate row{{}, {name, name, "", "", nullptr}, {}, {}};
+  row.measured.error.psnr_db = psnr_db;
+  row.measured.model_bytes = bytes;
+  row.measured.fit_ms = 10;
+  return row;
+}
+
+TEST(Advice, IsTheSmallestModelWithinHalfADecibelOfTheBest) {
+  // 0.4 dB below the best at 80 of its 1000 bytes; 0.6 dB below does not count, however small.
+  const std::vector<app::ComparedCandidate> rows{
+      figures("tiny", 29.4, 10), figures("small", 29.6, 80), figures("large", 30.0, 1000),
+      figures("bulky", 29.9, 500)};
+  const auto advice = app::advise(rows, 1);
+  ASSERT_TRUE(advice);
+  EXPECT_EQ(advice->candidate, "small");
+  EXPECT_NE(advice->sentence.find("0.4 dB below the best, \"large\", at 8 % of its bytes"),
+            std::string::npos)
+      << advice->sentence;
+  EXPECT_FALSE(app::advise({}, 1));
+}
+
+TEST(SessionNames, AreTheFoldersOwnUnlessTheyClash) {
+  EXPECT_EQ(app::session_names({"a/box", "b/stone/"}), (std::vector<std::string>{"box", "stone"}));
+  EXPECT_EQ(app::session_names({"a/box", "b/box"}), (std::vector<std::string>{"a/box", "b/box"}));
+}
+
+std::vector<std::string> split(const std::string& line) {
+  std::vector<std::string> fields;
+  std::istringstream text(line);
+  for (std::string field; std::getline(text, field, ',');) fields.push_back(field);
+  return fields;
+}
+
+/// The CSV as one name -> value map per line; names of candidates hold no comma, labels may.
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+/// A short recording of few pixels and patches, and the folder that receives its comparison.
+class Compare : public testing::Test {
+ protected:
+  Compare() : session_(folder_.path() / "session"), output_(folder_.path() / "out") {}
+
+  void make_session() const {
+    const ProgramRun synth = run_sheen({"synth", "glossy", "-o", session_, "--size", "320x180",
+                                        "--frames", "12", "--vertices", "600", "--quiet"});
+    ASSERT_EQ(synth.exit_code, 0) << synth.standard_error;
+  }
+
+  void expect_refused(const std::vector<std::string>& arguments, const std::string& subject) const {
+    const ProgramRun run = run_sheen(arguments);
+    EXPECT_EQ(run.exit_code, 2) << run.standard_error;
+    EXPECT_EQ(std::count(run.standard_error.begin(), run.standard_error.end(), '\n'), 1)
+        << run.standard_error;
+    EXPECT_NE(run.standard_error.find(subject), std::string::npos) << run.standard_error;
+  }
+
+  TemporaryFolder folder_;
+  fs::path session_;
+  fs::path output_;
+};
+
+void expect_finite_figures(const nlohmann::json& row) {
+  for (const char* name : {"psnr", "ssim", "rmse", "fit_ms", "fit_ms_per_frame",
+                           "render_ms_per_view", "coefficients_per_patch", "model_bytes"}) {
+    ASSERT_TRUE(row.at(name).is_number()) << name;  // NaN and infinity are null in JSON
+    EXPECT_GT(row.at(name).get<double>(), 0) << name;
+  }
+}
+
+/// The flags of a document agree with the law of the front.
+void expect_fronts(const nlohmann::json& rows, const char* cost, const char* flag) {
+  std::vector<CostBenefit> points;
+  for (const auto& row : rows) points.push_back({row.at(cost), row.at("psnr")});
+  const auto expected = front(points);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(rows[i].at(flag).get<bool>(), expected[i] != 0) << rows[i].at("candidate");
+  }
+}
+
+TEST_F(Compare, MeasuresEveryCandidateOnTheSameSamplesAndViews) {
+  make_session();
+  fs::create_directories(output_);
+  write_file(output_ / "notes.txt", "mine");
+  write_file(output_ / "compare.csv", "of an earlier run");
+  const ProgramRun run = run_sheen({"compare", session_, "-o", output_, "--json", "--quiet"});
+  ASSERT_EQ(run.exit_code, 0) << run.standard_error;
+  const auto document = run.json();
+  const auto& rows = document.at("results");
+  EXPECT_TRUE(document.at("left_out").empty()) << document.at("left_out");
+
+  // Everything registered is measured, on one set of samples and views.
+  std::vector<std::string> measured;
+  for (const auto& row : rows) {
+    measured.push_back(row.at("candidate"));
+    SCOPED_TRACE(measured.back());
+    expect_finite_figures(row);
+    EXPECT_EQ(row.at("samples"), rows[0].at("samples"));
+    EXPECT_EQ(row.at("views"), rows[0].at("views"));
+  }
+  EXPECT_EQ(measured, app::candidate_names());
+  expect_fronts(rows, "fit_ms_per_frame", "front_fit_time");
+  expect_fronts(rows, "render_ms_per_view", "front_render_time");
+  expect_fronts(rows, "model_bytes", "front_bytes");
+
+  // The CSV has a line for each, with as many names as values.
+  const auto lines = lines_of(read_file(output_ / "compare.csv"));
+  ASSERT_EQ(lines.size(), measured.size() + 1);
+  EXPECT_EQ(split(lines[0])[0], "session");
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    EXPECT_EQ(split(lines[i + 1])[1], measured[i]);
+    EXPECT_EQ(lines[i + 1].find("nan"), std::string::npos);
+    EXPECT_EQ(lines[i + 1].find("null"), std::string::npos);
+  }
+
+  // What lay in the folder and is not ours is still there; nothing half-written is.
+  EXPECT_EQ(read_file(output_ / "notes.txt"), "mine");
+  for (const auto& entry : fs::directory_iterator(output_)) {
+    EXPECT_NE(entry.path().filename().string().front(), '.') << entry.path();
+  }
+}
+
+TEST_F(Compare, HoldsFramesOutOfSessionsWithoutViewsOfTheirOwn) {
+  make_session();
+  fs::remove_all(session_ / "held_out");
+  // Frames 2 and 7 of 0 .. 11 are held out: index % 5 == 2.
+  const ProgramRun run = run_sheen({"compare", session_, "-o", output_, "--only", "mean,quadtree",
+                                    "--json", "--quiet", "--threads", "1"});
+  ASSERT_EQ(run.exit_code, 0) << run.standard_error;
+  const auto session = run.json().at("sessions").at(0);
+  EXPECT_EQ(session.at("held_out_views"), 2);
+  EXPECT_EQ(session.at("fitted_frames"), 10);
+  EXPECT_EQ(session.at("has_own_held_out"), false);
+  ASSERT_EQ(run.json().at("results").size(), 2U);
+}
+
+TEST_F(Compare, PageHoldsTheDataAndAsksForNothingElse) {
+  make_session();
+  const ProgramRun run =
+      run_sheen({"compare", session_, "-o", output_, "--only", "mean", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.standard_error;
+  if (!fs::exists(output_ / "compare.html")) GTEST_SKIP() << run.standard_error;
+  const std::string page = read_file(output_ / "compare.html");
+  EXPECT_NE(page.find("\"candidate\":\"mean\""), std::string::npos);
+  for (const char* mark : {"{{", " src=", "<link", "@import", "url("}) {
+    EXPECT_EQ(page.find(mark), std::string::npos) << mark;
+  }
+}
+
+TEST_F(Compare, RefusesBadInputWithOneLine) {
+  expect_refused({"compare", session_, "-o", output_, "--quiet"}, "session");
+  expect_refused({"compare", "-o", output_}, "sessions");
+  expect_refused({"compare", sample_session()}, "--output");
+  expect_refused({"compare", sample_session(), "-o", output_, "--only", "mean,best"}, "--only");
+  expect_refused({"compare", sample_session(), "-o", output_, "--hold-out", "0"}, "--hold-out");
+  expect_refused({"compare", sample_session(), sample_session(), "-o", output_, "--quiet"},
+                 "given twice");
+  write_file(output_, "a file");
+  expect_refused({"compare", sample_session(), "-o", output_, "--quiet"}, "out");
+  EXPECT_EQ(read_file(output_), "a file");
+}
+
+}  // namespace
+}  // namespace sheen::tests
