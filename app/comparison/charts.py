@@ -112,19 +112,22 @@ def draw_panel(axes, rows, families, cost, front, format_cost):
     axes.set_axisbelow(True)
     axes.tick_params(length=0, which="both")
     axes.margins(x=.16, y=.12)
-    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5), numticks=8))
+    costs = [float(row[cost]) for row in rows]
+    decades = math.log10(max(costs) / min(costs))
+    subs = (1, 2, 5) if decades < 1.4 else (1, 3) if decades < 2.4 else (1,)
+    axes.xaxis.set_major_locator(LogLocator(subs=subs, numticks=8))
     axes.xaxis.set_major_formatter(FuncFormatter(format_cost))
     axes.xaxis.set_minor_formatter(NullFormatter())
 
 
-def draw_legend(figure, families):
+def draw_legend(figure, families, columns):
     handles = [plt.Line2D([], [], linestyle="", marker=MARKERS[i % len(MARKERS)], markersize=8,
                           color=COLOURS[i % len(COLOURS)], label=family)
                for i, family in enumerate(families)]
     handles.append(plt.Line2D([], [], linestyle="", marker="o", markersize=8, markerfacecolor=PAPER,
                               color=SOFT, label="hollow: another is cheaper and better"))
     handles.append(plt.Line2D([], [], color=FRONT, alpha=.45, label="Pareto front"))
-    figure.legend(handles=handles, loc="lower center", ncol=3, frameon=False, fontsize=9,
+    figure.legend(handles=handles, loc="lower center", ncol=columns, frameon=False, fontsize=9,
                   labelcolor=INK)
 
 
@@ -148,7 +151,7 @@ def draw_chart(rows, folder, name, cost, front, title, format_cost):
         axes.set_ylabel("PSNR, dB")
     for axes in panels[len(sessions):]:
         axes.set_visible(False)
-    draw_legend(figure, families)
+    draw_legend(figure, families, 3 if columns == 1 else 4)
     figure.canvas.draw()
     for axes, session in zip(panels, sessions):
         place_labels(figure, axes, [(float(row[cost]), float(row["psnr"]), row["label"])

@@ -37,7 +37,7 @@
     { key: "fit_ms", name: "Fit, in all", text: milliseconds, least: true },
     { key: "render_ms_per_view", name: "Draw, a view", text: milliseconds, least: true },
   ];
-  const shapes = ["circle", "rect", "triangle", "rectRot", "star", "cross"];
+  const shapes = ["circle", "rect", "triangle", "rectRot"];
   const palette = { light: ["#7d8797", "#2f7ed8", "#d9552c", "#d99a00", "#0f9d6b", "#8e5bd0"],
                     dark: ["#a3aebe", "#66a8f2", "#f2805a", "#f0bf3c", "#3fcf98", "#b68cf0"] };
   const families = [...new Set(data.results.map((row) => row.family))];
@@ -111,10 +111,14 @@
                         borderWidth: 1.5, pointRadius: 0, pointHitRadius: 0, order: 9 }];
   };
 
-  // Ticks at 1, 2 and 5 of each decade only: a log axis of Chart.js offers nine and both its ends.
-  const is_round = (value) => {
-    const lead = value / 10 ** Math.floor(Math.log10(value) + 1e-9);
-    return [1, 2, 5].some((round) => Math.abs(lead - round) < 1e-6);
+  // A log axis of Chart.js offers nine ticks a decade and both its ends: keep 1, 2 and 5, or all nine
+  // where the axis is short.
+  const pick_ticks = (axis) => {
+    const leads = axis.max / axis.min < 8 ? [1, 2, 3, 4, 5, 6, 7, 8, 9] : [1, 2, 5];
+    axis.ticks = axis.ticks.filter(({ value }) => {
+      const lead = value / 10 ** Math.floor(Math.log10(value) + 1e-9);
+      return leads.some((round) => Math.abs(lead - round) < 1e-6);
+    });
   };
 
   const range = (cost) => {
@@ -131,7 +135,7 @@
     },
     scales: {
       x: { type: "logarithmic", ...range(cost), grid: { color: css("--rule"), drawBorder: false },
-           afterBuildTicks: (axis) => { axis.ticks = axis.ticks.filter((tick) => is_round(tick.value)); },
+           afterBuildTicks: pick_ticks,
            ticks: { color: css("--soft"), maxRotation: 0, autoSkipPadding: 14, callback: (v) => cost.text(v) } },
       y: { grace: "12%", grid: { color: css("--rule"), drawBorder: false }, ticks: { color: css("--soft") },
            title: { display: true, text: "PSNR, dB", color: css("--soft") } },
