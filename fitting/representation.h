@@ -4,8 +4,11 @@
 #include "core/samples/sample_batch.h"
 #include "fitting/light_field.h"
 
+#include <Eigen/Core>
+
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace sheen::fitting {
@@ -40,6 +43,13 @@ class Representation {
   [[nodiscard]] virtual const LightField& light_field() const = 0;
 
   [[nodiscard]] virtual FitStatistics statistics() const = 0;
+
+  /// How wrong the model is likely to be for a patch towards a direction on its unit disc, >= 0, to
+  /// rank places that need more views; nothing where the representation or the patch cannot tell.
+  [[nodiscard]] virtual std::optional<float> predicted_error(std::size_t /*patch_idx*/,
+                                                             const Eigen::Vector2f& /*uv*/) const {
+    return std::nullopt;
+  }
 };
 
 }  // namespace sheen::fitting

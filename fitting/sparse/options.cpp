@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#include "fitting/sparse/options.h"
+
+#include "fitting/sparse/sample_store.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace sheen::fitting::sparse {
+
+void Options::check() const {
+  if (!(tolerance > 0.0f && tolerance < 1.0f)) {
+    throw std::invalid_argument("tolerance is " + std::to_string(tolerance) +
+                                ", it must lie between 0 and 1");
+  }
+  if (!(economy >= 0.0f && economy <= 10.0f)) {
+    throw std::invalid_argument("economy is " + std::to_string(economy) +
+                                ", it must lie between 0 and 10");
+  }
+  if (max_samples < 8 || max_samples > static_cast<int>(kMaxStoredSamples)) {
+    throw std::invalid_argument("max_samples is " + std::to_string(max_samples) +
+                                ", it must lie between 8 and " + std::to_string(kMaxStoredSamples));
+  }
+}
+
+}  // namespace sheen::fitting::sparse

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "fitting/sparse/patch_model.h"
+#include "fitting/sparse/sample_store.h"
+
+#include <Eigen/Core>
+
+#include <span>
+
+namespace sheen::fitting::sparse {
+
+/// How wrong a patch is likely to be towards `uv`, in units of sRGB (only its order is meant
+/// seriously): root mean squared residual of the four nearest samples, each compared with the model
+/// and with its own nearest neighbour, + 2 x distance to the nearest sample x spread of the colours
+/// + half the disagreement between the model and a blend of the three nearest samples. Finite and
+/// >= 0; at least one sample, at most kMaxStoredSamples.
+float predicted_error(const PatchModel& model, std::span<const DirectedColour> samples,
+                      const Eigen::Vector2f& uv);
+
+}  // namespace sheen::fitting::sparse

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+#include "fitting/sparse/selection.h"
+
+#include "fitting/sparse/huber.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sheen::fitting::sparse {
+namespace {
+
+/// Weight of samples at which the economy reaches half its nominal value.
+constexpr float kEconomyOnset = 32.0f;
+/// Part of the samples' weight that a model may use up as degrees of freedom.
+constexpr float kMostFreedom = 0.7f;
+/// Samples below which a patch is one colour.
+constexpr Eigen::Index kFewestSamples = 4;
+/// Samples from which the linear base is tried.
+constexpr Eigen::Index kFewestForLinear = 5;
+/// Forward moves without a better score before the search gives up.
+constexpr int kPatience = 2;
+/// Channel value from which a sample counts as saturated.
+constexpr float kSaturated = 254.0f / 255.0f;
+/// A censored sample never asks for more than this.
+constexpr float kBrightestGuess = 1.5f;
+
+}  // namespace
+
+/// Every atom's worth as the next term: with d = |a|^2 + ridge less what the chosen terms explain
+/// of it, and s its product with the residual, adding it lowers the penalised error by |s|^2 / d.
+/// Both follow each new direction without a pass over the earlier ones.
+struct Selection::Candidates {
+  Eigen::Array<float, static_cast<int>(kMaxAtoms), 1> remainder;
+  Eigen::Matrix<float, static_cast<int>(kMaxAtoms), 3> correlation;
+  Eigen::Index count = 0;
+
+  void start(const Design& design) {
+    const auto columns = design.atom_columns();
+    count = columns.cols();
+    correlation.topRows(count).noalias() = columns.transpose() * design.colours();
+    remainder.head(count) = columns.colwise().squaredNorm().transpose();
+    // Atoms that no sample touches must not divide by their ridge alone.
+    constexpr float hardly_touched = 0.02f;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      remainder[i] = remainder[i] < hardly_touched
+                         ? std::numeric_limits<float>::infinity()
+                         : remainder[i] + design.ridge(kLinearBase + static_cast<FunctionIdx>(i));
+    }
+  }
+  void follow(const Design& design, const StepwiseFit& fit) {
+    Eigen::Matrix<float, static_cast<int>(kMaxAtoms), 1> shared;
+    shared.head(count).noalias() = design.atom_columns().transpose() * fit.last_direction();
+    remainder.head(count) -= shared.head(count).array().square();
+    correlation.topRows(count).noalias() -= shared.head(count) * fit.last_projection();
+  }
+  void remove(Eigen::Index atom) { remainder[atom] = std::numeric_limits<float>::infinity(); }
+  [[nodiscard]] std::optional<Eigen::Index> best() const {
+    constexpr float smallest_remainder = 1e-4f;
+    std::optional<Eigen::Index> best;
+    float largest = 0;
+    for (Eigen::Index i = 0; i < count; ++i) {
+      if (!(remainder[i] > smallest_remainder)) continue;
+      const float gain = correlation.row(i).squaredNorm() / remainder[i];
+      if (gain > largest) {
+        largest = gain;
+        best = i;
+      }
+    }
+    return best;
+  }
+};
+
+float Selection::generalised_error(const StepwiseFit& fit) const {
+  const float n = design_.total_weight();
+  const float left = 1.0f - fit.degrees_of_freedom() / n;
+  if (!(left > 1e-3f)) return fit.squared_error() / n;  // a single direction: nothing to compare
+  return fit.squared_error() / (n * left * left);
+}
+
+float Selection::score(const StepwiseFit& fit) const {
+  const float n = design_.total_weight();
+  const TermList& terms = fit.terms();
+  if (terms.count > 1 && fit.degrees_of_freedom() > kMostFreedom * n) {
+    return std::numeric_limits<float>::infinity();
+  }
+  const float economy = options_.economy * n / (n + kEconomyOnset);
+  const auto numbers = static_cast<float>(3 * terms.count + terms.bump_count());
+  return 1.5f * n * std::log(generalised_error(fit) + options_.tolerance * options_.tolerance) +
+         0.5f * economy * numbers * std::log(std::max(2.0f, n));
+}
+
+// Best prefix of the greedy path.
+Selection::Scored Selection::grown(std::size_t base_terms) {
+  Candidates candidates;
+  candidates.start(design_);
+  fit_.start(design_);
+  ++fits_;
+  for (FunctionIdx idx = 0; idx < base_terms; ++idx) {
+    fit_.push(design_, idx);
+    candidates.follow(design_, fit_);
+  }
+  Scored best{fit_.terms(), score(fit_)};
+  int in_vain = 0;
+  while (in_vain <= kPatience && fit_.terms().bump_count() < kMaxBumps) {
+    const auto atom = candidates.best();
+    if (!atom) break;
+    candidates.remove(*atom);
+    if (!fit_.push(design_, kLinearBase + static_cast<FunctionIdx>(*atom))) continue;
+    candidates.follow(design_, fit_);
+    ++fits_;
+    const float reached = score(fit_);
+    ++in_vain;
+    if (reached < best.score) {
+      best = {fit_.terms(), reached};
+      in_vain = 0;
+    }
+  }
+  return best;
+}
+
+Selection::Scored Selection::pruned(Scored best) {
+  while (best.terms.bump_count() > 0) {
+    fit_.build(design_, best.terms);
+    TermList fewer = fit_.terms();
+    fewer.erase(fit_.weakest_bump());
+    const float before = best.score;
+    try_terms(fewer, best);
+    if (!(best.score < before)) break;
+  }
+  return best;
+}
+
+void Selection::try_terms(const TermList& terms, Scored& best) {
+  fit_.build(design_, terms);
+  ++fits_;
+  const float reached = score(fit_);
+  if (reached < best.score) best = {fit_.terms(), reached};
+}
+
+TermList Selection::best_terms() {
+  if (design_.rows() < kFewestSamples) return TermList::base(kConstantBase);
+  const Scored constant = pruned(grown(kConstantBase));
+  if (design_.rows() < kFewestForLinear) return constant.terms;
+  const Scored linear = pruned(grown(kLinearBase));
+  return linear.score < constant.score ? linear.terms : constant.terms;
+}
+
+// Judges every sample by the residual it would have had were it not in the fit: a lone outlier with
+// a bump of its own stands out, while the samples of a highlight vouch for each other. `fit_` holds
+// the fit to judge by. Returns whether anything changed.
+bool Selection::discount_suspects(std::span<const DirectedColour> samples) {
+  std::array<float, kMaxStoredSamples> surprise;
+  bool changed = false;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Eigen::Vector3f residual =
+        fit_.residuals().row(static_cast<Eigen::Index>(i)) / design_.root_weight(i);
+    const float left = std::max(0.05f, 1.0f - fit_.leverage(i));
+    surprise[i] = residual.norm() / left;
+    // A saturated channel only says "at least this much".
+    Eigen::Vector3f wanted = samples[i].rgb;
+    for (int channel = 0; channel < 3; ++channel) {
+      const float fitted = samples[i].rgb[channel] - residual[channel];
+      if (wanted[channel] < kSaturated || fitted <= wanted[channel]) continue;
+      wanted[channel] = std::min(fitted, kBrightestGuess);
+    }
+    if (wanted == samples[i].rgb) continue;
+    design_.set_colour(i, wanted);
+    changed = true;
+  }
+  const std::span<float> factors(surprise.data(), samples.size());
+  if (!huber_factors(factors, options_.tolerance)) return changed;
+  design_.reweigh(factors);
+  return true;
+}
+
+SelectedModel Selection::outcome(const TermList& terms) {
+  fit_.build(design_, terms);
+  ++fits_;
+  const float error = generalised_error(fit_) + options_.tolerance * options_.tolerance;
+  return {fit_.model(fit_.terms().count), std::sqrt(error), fits_};
+}
+
+SelectedModel Selection::choose(std::span<const DirectedColour> samples) {
+  fits_ = 0;
+  design_.load(samples);
+  TermList terms = best_terms();
+  if (design_.rows() >= kFewestSamples) {
+    fit_.build(design_, terms);
+    if (discount_suspects(samples)) terms = best_terms();
+  }
+  return outcome(terms);
+}
+
+std::optional<TermList> Selection::with_best_bump(const TermList& terms,
+                                                  const Eigen::Vector2f& seen_at) {
+  if (terms.bump_count() == kMaxBumps) return std::nullopt;
+  fit_.build(design_, terms);
+  const auto residuals = fit_.residuals();
+  std::optional<FunctionIdx> best;
+  float largest = 0;
+  for (std::size_t atom = 0; atom < atoms().size(); ++atom) {
+    const Atom& a = atoms()[atom];
+    if ((seen_at - a.center).squaredNorm() >= a.support * a.support) continue;
+    const FunctionIdx idx = kLinearBase + atom;
+    const auto* end = terms.function.data() + terms.count;
+    if (std::find(terms.function.data(), end, static_cast<std::uint8_t>(idx)) != end) continue;
+    const auto column = design_.column(idx);
+    const float gain = (column.transpose() * residuals).squaredNorm() /
+                       (column.squaredNorm() + design_.ridge(idx));
+    if (gain > largest) {
+      largest = gain;
+      best = idx;
+    }
+  }
+  if (!best) return std::nullopt;
+  TermList more = terms;
+  more.push(*best);
+  return more;
+}
+
+SelectedModel Selection::step(std::span<const DirectedColour> samples, const PatchModel& model,
+                              const Eigen::Vector2f& seen_at) {
+  fits_ = 0;
+  design_.load(samples);
+  Scored best{TermList::of(model), std::numeric_limits<float>::infinity()};
+  if (design_.rows() < kFewestSamples) return outcome(TermList::base(kConstantBase));
+  try_terms(best.terms, best);
+  // Upgrade the base.
+  if (best.terms.base_terms() == kConstantBase && design_.rows() >= kFewestForLinear) {
+    TermList linear = TermList::base(kLinearBase);
+    for (std::size_t i = kConstantBase; i < best.terms.count; ++i) {
+      linear.push(best.terms.function[i]);
+    }
+    try_terms(linear, best);
+  }
+  // Add a bump, take one away.
+  if (const auto more = with_best_bump(best.terms, seen_at)) try_terms(*more, best);
+  if (best.terms.bump_count() > 1) {
+    fit_.build(design_, best.terms);
+    TermList fewer = fit_.terms();
+    fewer.erase(fit_.weakest_bump());
+    try_terms(fewer, best);
+  }
+  return outcome(best.terms);
+}
+
+}  // namespace sheen::fitting::sparse
