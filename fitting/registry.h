@@ -4,6 +4,7 @@
 #include "core/mesh/neighbours.h"
 #include "fitting/iwls/options.h"
 #include "fitting/representation.h"
+#include "fitting/sparse/options.h"
 #include "fitting/spherical_harmonics/options.h"
 
 #include <memory>
@@ -17,6 +18,7 @@ struct RepresentationOptions {
   iwls::Options iwls;
   int threads = 1;  ///< >= 1
   spherical_harmonics::Options spherical_harmonics{};
+  sparse::Options sparse{};
 };
 
 /// Names in the order users should see them; the first is the default.
