@@ -119,9 +119,17 @@ void add_synth_command(CLI::App& program, CommandContext& context) {
       ->check(CLI::Range(500, 2'000'000).description(""))
       ->type_name("N")
       ->capture_default_str();
+  CLI::Option* mesh_vertices =
+      command
+          ->add_option("--mesh-vertices", session.mesh_vertices,
+                       "Vertices of the session's mesh of the object, about; 0: as photographed")
+          ->check(CLI::Range(0, 2'000'000).description(""))
+          ->type_name("N")
+          ->capture_default_str();
   command
       ->add_option("--mesh", options->mesh,
                    "Put this mesh on the stage instead (metres, z up; PLY, OBJ or GLB)")
+      ->excludes(mesh_vertices)
       ->type_name("FILE");
   add_picture_options(*command, *options);
   command->add_option("--seed", session.seed, "Seed of path, tremor and noise")

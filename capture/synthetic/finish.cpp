@@ -15,6 +15,7 @@ const Eigen::Vector3f kTeal(0.012f, 0.105f, 0.115f);
 const Eigen::Vector3f kTerracotta(0.42f, 0.105f, 0.042f);
 const Eigen::Vector3f kIvory(0.60f, 0.51f, 0.37f);
 const Eigen::Vector3f kVein(0.05f, 0.035f, 0.025f);
+const Eigen::Vector3f kInk(0.02f, 0.025f, 0.06f);
 
 constexpr float kGlossySpecular = 0.20f;
 constexpr float kGlossyAlpha = 0.20f;
@@ -44,6 +45,13 @@ Eigen::Vector3f band_colour(float s) {
   const float teal = 1 - smooth_step(0.75f, 1.0f, phase) + smooth_step(3.0f, 3.25f, phase);
   const float terracotta = smooth_step(1.45f, 1.7f, phase) - smooth_step(2.55f, 2.8f, phase);
   return mix(mix(kIvory, kTeal, teal), kTerracotta, terracotta);
+}
+
+/// Share of ink at a place: hairlines along the zeros of a noise whose features are a fifth of the
+/// bands' half width, as a transfer print has them.
+float ink_at(const Eigen::Vector3f& p) {
+  const float line = std::abs(smooth_noise(5.0f * p + Eigen::Vector3f(3.7f, 0.6f, 9.2f)));
+  return 1 - smooth_step(0.06f, 0.16f, line);
 }
 
 }  // namespace
@@ -91,6 +99,8 @@ Finish finish_at(SceneKind kind, const Eigen::Vector3f& point_in_object, float u
   const float ridge = std::abs(smooth_noise(0.8f * p + Eigen::Vector3f(2.1f, 8.7f, 5.5f)) +
                                0.35f * smooth_noise(1.7f * p));
   albedo = mix(albedo, kVein, 0.65f * (1 - smooth_step(0.02f, 0.16f, ridge)));
+
+  if (kind == SceneKind::textured) albedo = mix(albedo, kInk, 0.9f * ink_at(p));
 
   Finish finish;
   finish.albedo = albedo.cwiseMax(0.004f).cwiseMin(0.9f);

@@ -9,10 +9,12 @@
 
 namespace sheen::capture::synthetic {
 
-/// How the object's enamel shines: not at all, in bands, everywhere.
-enum class SceneKind { matte, mixed, glossy };
+/// How the object's enamel shines: not at all, in bands, everywhere; `textured` shines like `mixed`
+/// under a fine print.
+enum class SceneKind { matte, mixed, glossy, textured };
 
-inline constexpr std::array<std::string_view, 3> kSceneNames{"matte", "mixed", "glossy"};
+inline constexpr std::array<std::string_view, 4> kSceneNames{"matte", "mixed", "glossy",
+                                                             "textured"};
 std::optional<SceneKind> scene_kind(std::string_view name);
 
 /// What a point of a surface does with light.

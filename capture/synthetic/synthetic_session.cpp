@@ -86,8 +86,9 @@ void write_text(const fs::path& path, const std::string& text) {
 }
 
 /// Files both sessions have: session.json, camera.yaml, object.ply.
-void write_common(const fs::path& folder, const Scene& scene, const core::CameraModel& camera,
-                  nlohmann::ordered_json frames, const char* pose_key, const char* pose_file) {
+void write_common(const fs::path& folder, const Scene& scene, const SyntheticOptions& options,
+                  const core::CameraModel& camera, nlohmann::ordered_json frames,
+                  const char* pose_key, const char* pose_file) {
   nlohmann::ordered_json session;
   session["format"] = "sheen-session";
   session["version"] = 1;
@@ -98,7 +99,9 @@ void write_common(const fs::path& folder, const Scene& scene, const core::Camera
                        {"T_stage_object", transform_json(scene.stage_from_object())}};
   write_text(folder / "session.json", session.dump(2) + "\n");
   write_camera(folder / "camera.yaml", camera);
-  core::write_ply(folder / "object.ply", scene.object());
+  const bool coarser = !options.mesh && options.mesh_vertices > 0;
+  core::write_ply(folder / "object.ply",
+                  coarser ? torus_knot(options.mesh_vertices) : scene.object());
 }
 
 void write_recording(const fs::path& folder, const Scene& scene, const core::CameraModel& camera,
@@ -106,7 +109,7 @@ void write_recording(const fs::path& folder, const Scene& scene, const core::Cam
   const CameraPath path(recording_path(options.seed), scene.object_centre(),
                         scene.object_radius_m());
   const std::vector<Trajectory::Entry> poses = walk(path, options.frames, false);
-  write_common(folder, scene, camera, {{"video", "frames.avi"}, {"fps", kFps}}, "board",
+  write_common(folder, scene, options, camera, {{"video", "frames.avi"}, {"fps", kFps}}, "board",
                "board.yaml");
   write_board(folder / "board.yaml", scene.board());
   write_trajectory(folder / "truth_poses.txt", poses);
@@ -130,7 +133,8 @@ void write_held_out(const fs::path& folder, const Scene& scene, const core::Came
                         scene.object_radius_m());
   const std::vector<Trajectory::Entry> poses = walk(path, options.held_out, true);
   fs::create_directories(folder / "images");
-  write_common(folder, scene, camera, {{"images", "images/%04d.png"}}, "poses", "poses.txt");
+  write_common(folder, scene, options, camera, {{"images", "images/%04d.png"}}, "poses",
+               "poses.txt");
   write_trajectory(folder / "poses.txt", poses);
 
   const Photographer photographer(camera);
@@ -153,6 +157,9 @@ void write_held_out(const fs::path& folder, const Scene& scene, const core::Came
 
 void SyntheticOptions::check() const {
   require_range("vertices", vertices, kMinKnotVertices, kMaxKnotVertices);
+  if (mesh_vertices != 0) {
+    require_range("mesh-vertices", mesh_vertices, kMinKnotVertices, kMaxKnotVertices);
+  }
   require_range("width", width_px, 160, 4096);
   require_range("height", height_px, 120, 4096);
   require_range("frames", frames, 2, 100'000);

@@ -17,14 +17,16 @@ struct SyntheticOptions {
   SceneKind scene = SceneKind::glossy;
   int vertices = 10'000;                      ///< of the knot, [500, 2000000]
   std::optional<std::filesystem::path> mesh;  ///< a mesh of one's own instead of the knot, metres
-  int width_px = 640;                         ///< [160, 4096]
-  int height_px = 360;                        ///< [120, 4096]
-  int frames = 120;                           ///< of the recording, [2, 100000]
-  int held_out = 12;                          ///< views apart from it, [0, 10000]
-  int samples = 8;                            ///< rays per pixel of a frame, [1, 256]
-  int jpeg_quality = 93;                      ///< of the video, [1, 100]
-  std::uint32_t seed = 1;                     ///< of path, tremor and noise
-  int threads = 1;                            ///< >= 1
+  int mesh_vertices = 0;   ///< of the knot as the session's mesh has it, [500, 2000000]; 0: as
+                           ///< photographed; without effect on a mesh of one's own
+  int width_px = 640;      ///< [160, 4096]
+  int height_px = 360;     ///< [120, 4096]
+  int frames = 120;        ///< of the recording, [2, 100000]
+  int held_out = 12;       ///< views apart from it, [0, 10000]
+  int samples = 8;         ///< rays per pixel of a frame, [1, 256]
+  int jpeg_quality = 93;   ///< of the video, [1, 100]
+  std::uint32_t seed = 1;  ///< of path, tremor and noise
+  int threads = 1;         ///< >= 1
 
   /// Throws std::invalid_argument naming the option and its range.
   void check() const;

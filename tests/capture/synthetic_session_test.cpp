@@ -142,6 +142,27 @@ TEST_F(SyntheticSession, PutsAMeshOfOnesOwnOnTheStage) {
   EXPECT_THROW(make_scene(options), core::Error);
 }
 
+TEST_F(SyntheticSession, SessionMeshMayBeCoarserThanWhatIsPhotographed) {
+  SyntheticOptions options = small();
+  options.vertices = 4000;
+  write_synthetic_session(folder_ / "fine", options, {});
+  options.mesh_vertices = 600;
+  options.check();
+  write_synthetic_session(folder_ / "coarse", options, {});
+  auto fine = contents(folder_ / "fine");
+  auto coarse = contents(folder_ / "coarse");
+  for (const char* mesh : {"object.ply", "held_out/object.ply"}) {
+    EXPECT_EQ(core::read_mesh(folder_ / "coarse" / mesh).positions.size(),
+              torus_knot(600).positions.size());
+    fine.erase(mesh);
+    coarse.erase(mesh);
+  }
+  // Pictures, poses and the place on the stage are those of the fine object.
+  EXPECT_EQ(fine, coarse);
+  options.mesh_vertices = 20;
+  EXPECT_THROW(options.check(), std::invalid_argument);
+}
+
 TEST_F(SyntheticSession, OptionsOutOfRangeAreNamed) {
   SyntheticOptions options = small();
   EXPECT_NO_THROW(options.check());

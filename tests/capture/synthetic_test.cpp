@@ -133,7 +133,8 @@ TEST(Finish, IsAReflectanceEverywhere) {
   std::uniform_real_distribution<float> place(-0.1f, 0.1f);
   for (int i = 0; i < 2000; ++i) {
     const Eigen::Vector3f point(place(random), place(random), place(random));
-    for (const SceneKind kind : {SceneKind::matte, SceneKind::mixed, SceneKind::glossy}) {
+    for (const SceneKind kind :
+         {SceneKind::matte, SceneKind::mixed, SceneKind::glossy, SceneKind::textured}) {
       const Finish finish = finish_at(kind, point, 0.013f);
       ASSERT_GT(finish.albedo.minCoeff(), 0);
       ASSERT_LE(finish.albedo.maxCoeff(), 1);
