@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "bench/stability/confidence.h"
 #include "bench/stability/stability_suite.h"
 #include "bench/stability/stability_tables.h"
 
@@ -9,10 +10,13 @@ using namespace sheen::bench;
 int main(int argc, char** argv) {
   return run_program(argc, argv, "Where each method fails: few, noisy, one-sided, wrong samples",
                      [](const ProgramOptions& options, const Progress& progress) {
-                       const auto rows = run_stability(stability_options(options), progress);
+                       const StabilityOptions suite = stability_options(options);
+                       const auto rows = run_stability(suite, progress);
+                       const Table confidence = confidence_study(suite, progress);
                        // Store everything, show what can be read.
                        write_csv(options.output / "stability.csv", all_rows(rows));
                        write_csv(options.output / "monotonicity.csv", monotonicity(rows));
+                       write_csv(options.output / "confidence.csv", confidence);
                        for (const Table& table : error_against_samples(rows))
                          fmt::print("{}\n", markdown(table));
                        fmt::print("{}\n", markdown(error_against_settings(rows, ViewSet::uni)));
@@ -20,5 +24,7 @@ int main(int argc, char** argv) {
                        fmt::print("{}\n", markdown(extrapolation(rows)));
                        fmt::print("{}\n", markdown(monotonicity(rows)));
                        fmt::print("{}\n", markdown(monotonicity_of(rows, default_method_name())));
+                       fmt::print("{}\n", markdown(confidence));
+                       fmt::print("{}\n", markdown(stability_targets(rows, default_method_name())));
                      });
 }

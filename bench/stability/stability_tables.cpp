@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 
@@ -193,6 +194,48 @@ Table monotonicity_of(std::span<const StabilityRow> rows, const std::string& met
       table.rows.push_back({std::string(name_of(views)), setting, increase_cell(increase)});
     }
   }
+  return table;
+}
+
+Table stability_targets(std::span<const StabilityRow> rows, const std::string& method) {
+  Table table{fmt::format("Targets of {} in the stability suite", method),
+              {"target", "wanted", "measured", "verdict"},
+              {}};
+  const auto verdict = [](bool met) { return std::string(met ? "met" : "missed"); };
+  const auto on_arc = [&](const std::string& name) {
+    return find(rows, ViewSet::arc, "base", kShownSamples, name);
+  };
+  const StabilityRow* ours = on_arc(method);
+  for (const char* rival : {"sh 3", "sh 3 ridge 1"}) {
+    const StabilityRow* harmonics = on_arc(rival);
+    if (ours == nullptr || harmonics == nullptr) continue;
+    const double better_db = 20.0 * std::log10(harmonics->rms_glossy / ours->rms_glossy);
+    table.rows.push_back({fmt::format("glossy patches on arcs, better than {}", rival), "3 dB",
+                          fmt::format("{:.2f} dB", better_db), verdict(better_db >= 3.0)});
+  }
+  // Worst value: over all view sets and settings.
+  double ratio = 0;
+  std::string where;
+  Increase increase{-1.0, 0, ""};
+  for (const StabilityRow& row : rows) {
+    if (row.method != method) continue;
+    const StabilityRow* mean = find(rows, row.views, row.setting, row.samples, "mean");
+    const std::string label =
+        fmt::format("{} {} @{}", name_of(row.views), row.setting, row.samples);
+    if (mean != nullptr && row.worst95 / mean->worst95 > ratio) {
+      ratio = row.worst95 / mean->worst95;
+      where = label;
+    }
+    const Increase here = worst_increase(rows, row.views, row.setting, method);
+    if (here.part <= increase.part) continue;
+    increase = here;
+    increase.setting = fmt::format("{} {}", name_of(row.views), row.setting);
+  }
+  table.rows.push_back({"worst unclamped error over the mean colour's, any row", "1.10",
+                        fmt::format("{:.2f} ({})", ratio, where), verdict(ratio <= 1.10)});
+  table.rows.push_back({"increase of the RMS by more samples, any row", "+2.0 %",
+                        fmt::format("{} {}", increase_cell(increase), increase.setting),
+                        verdict(increase.part <= 0.02)});
   return table;
 }
 

@@ -30,4 +30,8 @@ Table monotonicity(std::span<const StabilityRow> rows);
 /// The same for one method, one line for each setting.
 Table monotonicity_of(std::span<const StabilityRow> rows, const std::string& method);
 
+/// What the parsimonious method promises, measured: all glossy classes on handheld arcs with 64
+/// samples, worst values, more samples.
+Table stability_targets(std::span<const StabilityRow> rows, const std::string& method);
+
 }  // namespace sheen::bench

@@ -34,6 +34,13 @@ Method harmonics_method(int degree) {
   return {fmt::format("sh {}", degree), "sh", options};
 }
 
+Method strong_harmonics_method() {
+  Method method = harmonics_method(3);
+  method.name = "sh 3 ridge 1";
+  method.options.spherical_harmonics.ridge = 1.0;
+  return method;
+}
+
 std::vector<Method> all_methods() {
   std::vector<Method> methods;
   for (const bool faithful : {true, false}) {
@@ -48,6 +55,7 @@ std::vector<Method> all_methods() {
   for (const std::string& name : fitting::representation_names()) {
     if (name == "sh") {
       for (int degree = 1; degree <= 3; ++degree) methods.push_back(harmonics_method(degree));
+      methods.push_back(strong_harmonics_method());
     } else if (name != "iwls") {
       methods.push_back({name, name, {}});
     }
