@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: MIT
+#include "fitting/registry.h"
+#include "fitting/sparse/huber.h"
+#include "fitting/sparse/light_field_model.h"
+#include "fitting/sparse/sample_store.h"
+#include "fitting/sparse/selection.h"
+#include "tests/fitting/samples_for_tests.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+
+namespace sheen::fitting::sparse {
+namespace {
+
+using testing::add_sample;
+using testing::colour_of;
+using testing::disc_grid;
+using testing::isolated;
+using testing::Lumisphere;
+using testing::one_sample;
+using testing::scattered;
+using testing::teach;
+
+std::unique_ptr<Representation> make_sparse(std::size_t patches = 1, int threads = 1,
+                                            const Options& options = {}) {
+  RepresentationOptions all;
+  all.sparse = options;
+  all.threads = threads;
+  return make_representation("sparse", isolated(patches), all);
+}
+
+PatchModel patch_of(const Representation& representation, std::size_t patch_idx = 0) {
+  return dynamic_cast<const LightFieldModel&>(representation.light_field()).patch(patch_idx);
+}
+
+/// A highlight as wide as a bump of the finest level, on grey.
+Eigen::Vector3d highlight(double u, double v) {
+  const double squared = (u - 0.3) * (u - 0.3) + (v + 0.2) * (v + 0.2);
+  return Eigen::Vector3d(0.3, 0.25, 0.2) +
+         Eigen::Vector3d::Constant(0.5 * std::exp(-squared / 0.04));
+}
+
+std::vector<DirectedColour> sampled(const std::vector<Eigen::Vector2d>& directions,
+                                    const Lumisphere& truth) {
+  std::vector<DirectedColour> samples;
+  for (const Eigen::Vector2d& x : directions) {
+    samples.push_back({x.cast<float>(), truth(x.x(), x.y()).cast<float>()});
+  }
+  return samples;
+}
+
+TEST(SparseFit, MattePatchEndsAsOneColour) {
+  constexpr unsigned seed = 1;
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  const Eigen::Vector3d truth(0.6, 0.4, 0.2);
+  const auto representation = make_sparse();
+  teach(*representation, scattered(96, seed), [&](double, double) -> Eigen::Vector3d {
+    // Uniform noise of standard deviation 0.01: half width 0.01 sqrt(3).
+    const double noise =
+        (static_cast<double>(random()) / 4294967295.0 - 0.5) * 0.02 * std::sqrt(3.0);
+    return truth.array() + noise;
+  });
+  // Three numbers; the mean of 96 samples is off by 0.01 / sqrt(96) = 0.001, four deviations 0.004.
+  EXPECT_EQ(representation->light_field().coefficient_count(), 3u);
+  const Eigen::Vector3d mean = colour_of(representation->light_field(), 0, {0, 0}).cast<double>();
+  EXPECT_LT((mean - truth).cwiseAbs().maxCoeff(), 0.004);
+}
+
+TEST(SparseFit, SingleBumpIsFoundWithItsAtom) {
+  // The lumisphere is the constant and one atom: the fit must name it and no other.
+  const std::size_t atom_idx = 40;
+  PatchModel truth;
+  truth.coefficient[0] = Eigen::Vector3f(0.3f, 0.3f, 0.3f);
+  truth.bump_count = 1;
+  truth.atom[0] = static_cast<std::uint8_t>(atom_idx);
+  truth.coefficient[1] = Eigen::Vector3f(0.4f, 0.3f, 0.2f);
+  const auto representation = make_sparse();
+  teach(*representation, scattered(96, 2), [&](double u, double v) -> Eigen::Vector3d {
+    return evaluate(truth, {static_cast<float>(u), static_cast<float>(v)}).cast<double>();
+  });
+  const PatchModel fitted = patch_of(*representation);
+  ASSERT_EQ(fitted.base_terms, kConstantBase);
+  ASSERT_EQ(fitted.bump_count, 1u);
+  EXPECT_EQ(fitted.atom[0], atom_idx);
+  // Two terms of three numbers and one index.
+  EXPECT_EQ(representation->light_field().coefficient_count(), 7u);
+}
+
+TEST(SparseFit, LinearLumisphereTakesTheLinearBase) {
+  const auto representation = make_sparse();
+  teach(*representation, scattered(96, 3), [](double u, double v) {
+    return Eigen::Vector3d(0.5 + 0.3 * u, 0.5 - 0.2 * v, 0.4 + 0.1 * (u + v));
+  });
+  const PatchModel fitted = patch_of(*representation);
+  EXPECT_EQ(fitted.base_terms, kLinearBase);
+  EXPECT_EQ(fitted.bump_count, 0u);
+}
+
+TEST(SparseFit, HighlightIsBetterThanOneColour) {
+  const auto representation = make_sparse();
+  teach(*representation, scattered(96, 4), highlight);
+  double squared = 0;
+  double squared_of_mean = 0;
+  const Eigen::Vector3d mean = representation->light_field().mean_colour(0).cast<double>();
+  for (const Eigen::Vector2f& x : disc_grid()) {
+    const Eigen::Vector3d truth = highlight(static_cast<double>(x.x()), static_cast<double>(x.y()));
+    squared +=
+        (colour_of(representation->light_field(), 0, x).cast<double>() - truth).squaredNorm();
+    squared_of_mean += (mean - truth).squaredNorm();
+  }
+  // A tenth of the variance is 10 dB.
+  EXPECT_LT(squared, 0.1 * squared_of_mean);
+}
+
+TEST(SparseFit, OrderOfViewsDoesNotMatter) {
+  auto directions = scattered(60, 5);
+  const auto forwards = make_sparse();
+  teach(*forwards, directions, highlight);
+  std::reverse(directions.begin(), directions.end());
+  const auto backwards = make_sparse();
+  teach(*backwards, directions, highlight);
+  // The same least-squares problem: sums in another order differ in the last bits of a float,
+  // coefficients are halves.
+  for (const Eigen::Vector2f& x : disc_grid(8, 16)) {
+    const Eigen::Vector3f difference =
+        colour_of(forwards->light_field(), 0, x) - colour_of(backwards->light_field(), 0, x);
+    EXPECT_LT(difference.cwiseAbs().maxCoeff(), 0.002f);
+  }
+}
+
+TEST(SparseFit, ThreadsDoNotMatter) {
+  constexpr std::size_t patches = 1500;  // enough for several ranges
+  const auto one = make_sparse(patches, 1);
+  const auto three = make_sparse(patches, 3);
+  for (const Eigen::Vector2d& x : scattered(12, 6)) {
+    core::SampleBatch batch;
+    for (std::uint32_t patch = 0; patch < patches; ++patch) {
+      const Eigen::Vector2d turned(x.x() * std::cos(patch) - x.y() * std::sin(patch),
+                                   x.x() * std::sin(patch) + x.y() * std::cos(patch));
+      add_sample(batch, patch, turned, highlight(turned.x(), turned.y()));
+    }
+    EXPECT_EQ(one->absorb(batch).patches, three->absorb(batch).patches);
+  }
+  one->finish();
+  three->finish();
+  EXPECT_EQ(one->statistics().fits, three->statistics().fits);
+  for (std::size_t patch = 0; patch < patches; ++patch) {
+    const PatchModel a = patch_of(*one, patch);
+    const PatchModel b = patch_of(*three, patch);
+    ASSERT_EQ(a.term_count(), b.term_count());
+    for (std::size_t i = 0; i < a.term_count(); ++i) {
+      ASSERT_EQ(a.coefficient[i], b.coefficient[i]) << "patch " << patch;
+    }
+  }
+}
+
+TEST(SparseFit, FewSamplesGiveTheirMean) {
+  for (const std::size_t count : {1u, 2u, 3u}) {
+    const auto representation = make_sparse();
+    const auto directions = scattered(count, 7);
+    teach(*representation, directions, highlight);
+    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector2d& x : directions) mean += highlight(x.x(), x.y());
+    mean /= static_cast<double>(count);
+    // Below four samples a patch is one colour; halves near 0.5 are exact to 0.00025.
+    const Eigen::Vector3d fitted =
+        colour_of(representation->light_field(), 0, {0.7f, 0}).cast<double>();
+    EXPECT_LT((fitted - mean).cwiseAbs().maxCoeff(), 0.0005) << count;
+    EXPECT_EQ(representation->light_field().coefficient_count(), 3u);
+  }
+}
+
+TEST(SparseFit, RepeatedDirectionGivesTheMean) {
+  const auto representation = make_sparse();
+  for (int i = 0; i < 40; ++i) {
+    representation->absorb(
+        one_sample(0, {0.3, -0.4}, Eigen::Vector3d::Constant(i % 2 == 0 ? 0.2 : 0.8)));
+  }
+  representation->finish();
+  const Eigen::Vector3f seen = colour_of(representation->light_field(), 0, {0.3f, -0.4f});
+  EXPECT_NEAR(seen.x(), 0.5f, 0.01f);
+}
+
+TEST(SparseFit, CollinearSweepStaysInRange) {
+  // A ramp over half the disc's diameter, 0.3 to 0.7: continued as a line it is 0.1 to 0.9 at the
+  // rim; nothing may go further.
+  const auto representation = make_sparse();
+  for (int i = 0; i < 40; ++i) {
+    const double u = -0.5 + i / 39.0;
+    representation->absorb(one_sample(0, {u, 0.0}, Eigen::Vector3d::Constant(0.5 + 0.4 * u)));
+  }
+  representation->finish();
+  for (const Eigen::Vector2f& x : disc_grid()) {
+    const Eigen::Vector3f colour = colour_of(representation->light_field(), 0, x);
+    ASSERT_GT(colour.minCoeff(), 0.1f - 0.05f);
+    ASSERT_LT(colour.maxCoeff(), 0.9f + 0.05f);
+  }
+}
+
+TEST(SparseFit, UnusableSamplesAreIgnored) {
+  const auto representation = make_sparse();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double inf = std::numeric_limits<double>::infinity();
+  representation->absorb(one_sample(0, {nan, 0.0}, {0.5, 0.5, 0.5}));
+  representation->absorb(one_sample(0, {0.0, 0.0}, {0.5, inf, 0.5}));
+  EXPECT_EQ(representation->statistics().samples, 0u);
+  representation->absorb(one_sample(0, {0.0, 0.0}, {0.25, 0.25, 0.25}));
+  representation->finish();
+  EXPECT_EQ(colour_of(representation->light_field(), 0, {0, 0}), Eigen::Vector3f::Constant(0.25f));
+}
+
+TEST(SparseFit, HoldingStillForMinutesKeepsTheModel) {
+  const auto representation = make_sparse();
+  teach(*representation, scattered(90, 8), highlight);
+  const Eigen::Vector3f before = colour_of(representation->light_field(), 0, {0.3f, -0.2f});
+  for (int i = 0; i < 5000; ++i) {
+    representation->absorb(one_sample(0, {-0.5, 0.5}, highlight(-0.5, 0.5)));
+  }
+  representation->finish();
+  // The crowd takes the place of at most six kept samples.
+  const Eigen::Vector3f after = colour_of(representation->light_field(), 0, {0.3f, -0.2f});
+  EXPECT_LT((after - before).cwiseAbs().maxCoeff(), 0.02f);
+}
+
+TEST(SparseFit, LoneOutlierIsDiscountedAndHighlightIsNot) {
+  const auto grey = [](double, double) -> Eigen::Vector3d { return {0.3, 0.3, 0.3}; };
+  Selection selection{Options{}};
+  std::vector<DirectedColour> samples = sampled(scattered(64, 9), grey);
+  // One stray sample: what is drawn there stays nearer to grey than to the stray.
+  auto with_stray = samples;
+  with_stray[10].rgb = Eigen::Vector3f::Constant(0.9f);
+  const PatchModel stray = selection.choose(with_stray).model;
+  EXPECT_LT(evaluate(stray, with_stray[10].uv).x(), 0.6f);
+  // Three that agree: drawn nearer to their colour.
+  const Eigen::Vector2f place = samples[10].uv;
+  auto with_highlight = samples;
+  for (const Eigen::Vector2f& offset :
+       {Eigen::Vector2f(0, 0), Eigen::Vector2f(0.04f, 0), Eigen::Vector2f(0, 0.04f)}) {
+    with_highlight.push_back({place + offset, Eigen::Vector3f::Constant(0.9f)});
+  }
+  with_highlight.erase(with_highlight.begin() + 10);
+  const PatchModel bright = selection.choose(with_highlight).model;
+  EXPECT_GT(evaluate(bright, place).x(), 0.6f);
+}
+
+TEST(SparseFit, HuberWeighsByThreeDeviations) {
+  // Median 0.1: threshold 3 x 1.4826 x 0.1 = 0.44478.
+  std::array<float, 5> factors{0.1f, 0.1f, 0.1f, 0.05f, 0.88956f};
+  EXPECT_TRUE(huber_factors(factors, 0.001f));
+  EXPECT_EQ(factors[0], 1.0f);
+  EXPECT_LT(factors[4], 0.51f);
+  EXPECT_GT(factors[4], 0.0f);
+  std::array<float, 3> calm{0.0f, 0.0f, 0.02f};
+  EXPECT_FALSE(huber_factors(calm, 0.01f));
+}
+
+TEST(SampleStore, KeepsTheExtremesWhenFull) {
+  // Samples crowd round the centre; the four at the rim come first and must survive unmerged.
+  SampleStore store;
+  const std::array<Eigen::Vector2d, 4> rim{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+  for (const Eigen::Vector2d& x : rim) store.add({x.x(), x.y(), {1, 1, 1}}, 16);
+  for (const Eigen::Vector2d& x : scattered(500, 10)) {
+    store.add({0.3 * x.x(), 0.3 * x.y(), {0, 0, 0}}, 16);
+  }
+  ASSERT_EQ(store.size(), 16u);
+  for (std::size_t i = 0; i < rim.size(); ++i) {
+    EXPECT_LT((store[i].uv - rim[i].cast<float>()).norm(), 1e-4f);
+    EXPECT_NEAR(store[i].rgb.x(), 1.0f, 1e-4f);
+  }
+}
+
+TEST(SampleStore, MergingAveragesColours) {
+  // 2 places, then 100 samples of alternating colour at one of them: their mean is 0.5.
+  SampleStore store;
+  store.add({0.9, 0, {0, 0, 0}}, 2);
+  for (int i = 0; i < 100; ++i) store.add({-0.9, 0, {i % 2 == 0 ? 0.4 : 0.6, 0, 0}}, 2);
+  ASSERT_EQ(store.size(), 2u);
+  // Each merge rounds to 1/65534; the sum of 99 roundings weighted by 1/count stays below 1e-3.
+  EXPECT_NEAR(store[1].rgb.x(), 0.5f, 1e-3f);
+}
+
+TEST(SparseFit, PredictedErrorIsFiniteAndRisesAwayFromSamples) {
+  const auto representation = make_sparse(2);
+  // Only the half u < 0 is seen.
+  for (const Eigen::Vector2d& x : scattered(80, 11)) {
+    if (x.x() < 0) representation->absorb(one_sample(0, x, highlight(x.x(), x.y())));
+  }
+  representation->finish();
+  for (const Eigen::Vector2f& x : disc_grid()) {
+    const auto error = representation->predicted_error(0, x);
+    ASSERT_TRUE(error.has_value());
+    ASSERT_TRUE(std::isfinite(*error) && *error >= 0.0f);
+  }
+  EXPECT_GT(*representation->predicted_error(0, {0.95f, 0}),
+            *representation->predicted_error(0, {-0.5f, 0}));
+  // Nothing is known of a patch never seen.
+  EXPECT_FALSE(representation->predicted_error(1, {0, 0}).has_value());
+}
+
+TEST(SparseFit, BadOptionsAreRefused) {
+  EXPECT_THROW(make_sparse(1, 1, {.tolerance = 0.0f}), std::invalid_argument);
+  EXPECT_THROW(make_sparse(1, 1, {.tolerance = std::numeric_limits<float>::quiet_NaN()}),
+               std::invalid_argument);
+  EXPECT_THROW(make_sparse(1, 1, {.economy = -1.0f}), std::invalid_argument);
+  EXPECT_THROW(make_sparse(1, 1, {.max_samples = 4}), std::invalid_argument);
+  EXPECT_THROW(make_sparse(1, 1, {.max_samples = 129}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace sheen::fitting::sparse
