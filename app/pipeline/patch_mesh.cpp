@@ -11,8 +11,8 @@
 namespace sheen::app {
 namespace {
 
-constexpr int kProbedFrames = 90;
-constexpr std::size_t kProbedPoses = 9;
+constexpr int kReadFrames = 90;
+constexpr int kProbedFrames = 9;  // of those read: poses from tags take their time
 constexpr std::size_t kMostPatches = 2'000'000;
 
 }  // namespace
@@ -25,10 +25,11 @@ std::optional<double> pixel_footprint_m(const capture::Session& session, const c
       session.stage_from_object * bounds.center().cast<double>();
 
   std::vector<double> distances_m;
-  const auto frames = capture::open_frames(session, 0, kProbedFrames);
-  while (distances_m.size() < kProbedPoses) {
-    const auto frame = frames->next();
-    if (!frame) break;
+  const auto frames = capture::open_frames(session, 0, kReadFrames);
+  const int stride = std::max(
+      1, std::min(frames->frame_count().value_or(kReadFrames), kReadFrames) / kProbedFrames);
+  for (int i = 0; const auto frame = frames->next(); ++i) {
+    if (i % stride != 0 && !distances_m.empty()) continue;
     const auto result = poses.estimate(*frame);
     if (const auto* pose = std::get_if<capture::FramePose>(&result)) {
       distances_m.push_back((pose->camera_from_stage * centre_in_stage).norm());

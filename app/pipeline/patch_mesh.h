@@ -8,8 +8,8 @@
 
 namespace sheen::app {
 
-/// Size of a pixel on the object, metres: distance over focal length, median over the first posed
-/// frames. Nothing when none of them gets a pose.
+/// Size of a pixel on the object, metres: distance over focal length, median over some posed frames
+/// among the first ninety. Nothing when none of those gets a pose.
 std::optional<double> pixel_footprint_m(const capture::Session& session, const core::Mesh& mesh,
                                         capture::PoseEstimator& poses);
 
