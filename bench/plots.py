@@ -31,14 +31,14 @@ STYLES = {
     "sh 1": ("harmonics, degree 1", "#f5c26b", "-.", "<"),
     "sh 2": ("harmonics, degree 2", "#eda034", "--", "<"),
     "sh 3": ("harmonics, degree 3", "#d9770b", "-", "<"),
-    "sh 3 ridge 1": ("harmonics, degree 3, ridge 1", "#a35a00", ":", ">"),
+    "sh 3 ridge .01": ("harmonics 3, ridge .01", "#a35a00", ":", ">"),
     "mean": ("mean colour", "#7f7f7f", "-", "x"),
     "sparse": ("sparse", "#1e8a3c", "-", "*"),
     "nearest-views": ("nearest views", "#8e5ea2", "--", "h"),
 }
 # What line charts show: the rest is close to one of these and stands in the tables.
 SHOWN = ["quadtree 16x3 faithful", "adaptive 16x3 faithful", "quadtree 16x3 ridge",
-         "quadtree 64x3 ridge", "sh 3", "sh 3 ridge 1", "mean", "nearest-views", "sparse"]
+         "quadtree 64x3 ridge", "sh 3", "sh 3 ridge .01", "mean", "nearest-views", "sparse"]
 
 plt.rcParams.update({
     "figure.dpi": 160, "savefig.dpi": 160, "font.size": 12, "axes.titlesize": 13,

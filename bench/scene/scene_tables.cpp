@@ -162,7 +162,7 @@ Table scene_targets(std::span<const SceneRow> rows, const std::string& method) {
     double fewer, better_db;
   };
   for (const Rival& rival : {Rival{"quadtree 16x3 faithful", 0.85, 1.5}, Rival{"sh 3", 0.60, 2.0},
-                             Rival{"sh 3 ridge 1", 0.60, 2.0}}) {
+                             Rival{"sh 3 ridge .01", 0.60, 2.0}}) {
     const auto row = find_base(rival.name);
     if (!row) continue;
     const double fewer = 1.0 - ours->numbers / row->numbers;

@@ -206,7 +206,7 @@ Table stability_targets(std::span<const StabilityRow> rows, const std::string& m
     return find(rows, ViewSet::arc, "base", kShownSamples, name);
   };
   const StabilityRow* ours = on_arc(method);
-  for (const char* rival : {"sh 3", "sh 3 ridge 1"}) {
+  for (const char* rival : {"sh 3", "sh 3 ridge .01"}) {
     const StabilityRow* harmonics = on_arc(rival);
     if (ours == nullptr || harmonics == nullptr) continue;
     const double better_db = 20.0 * std::log10(harmonics->rms_glossy / ours->rms_glossy);

@@ -34,10 +34,10 @@ Method harmonics_method(int degree) {
   return {fmt::format("sh {}", degree), "sh", options};
 }
 
-Method strong_harmonics_method() {
+Method free_harmonics_method() {
   Method method = harmonics_method(3);
-  method.name = "sh 3 ridge 1";
-  method.options.spherical_harmonics.ridge = 1.0;
+  method.name = "sh 3 ridge .01";
+  method.options.spherical_harmonics.ridge = 0.01;
   return method;
 }
 
@@ -55,7 +55,7 @@ std::vector<Method> all_methods() {
   for (const std::string& name : fitting::representation_names()) {
     if (name == "sh") {
       for (int degree = 1; degree <= 3; ++degree) methods.push_back(harmonics_method(degree));
-      methods.push_back(strong_harmonics_method());
+      methods.push_back(free_harmonics_method());
     } else if (name != "iwls") {
       methods.push_back({name, name, {}});
     }

@@ -26,8 +26,8 @@ Method iwls_method(fitting::iwls::Construction construction, bool faithful, int 
 /// Spherical harmonics of degree 1, 2 or 3 with the ridge that users get.
 Method harmonics_method(int degree);
 
-/// Degree 3 with the ridge that suits it best on this test bed: a fair rival on arcs.
-Method strong_harmonics_method();
+/// Degree 3 with next to no ridge: what a model does that nothing holds back.
+Method free_harmonics_method();
 
 /// Everything the studies compare: the constructions of IWLS, faithful and with the ridge, batch
 /// with one and six terms, spherical harmonics, and every other representation of
