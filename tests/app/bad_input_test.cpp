@@ -88,7 +88,7 @@ TEST_F(BadInput, EmptyVideo) {
 
 TEST_F(BadInput, CameraOfAnotherPictureSize) {
   replace("camera.yaml", "image_width: *[0-9]+", "image_width: 320");
-  expect_refused("camera.yaml");
+  expect_refused("320x360");
 }
 
 TEST_F(BadInput, CameraThatIsNoYaml) {
@@ -167,7 +167,7 @@ TEST_F(BadInput, OutputFolderThatCannotBeMade) {
 TEST_F(BadInput, WrongArguments) {
   expect_one_line(run_sheen({"replay"}), "session");
   expect_one_line(run_sheen({"fly"}), "fly");
-  expect_one_line(run_sheen({}), "subcommand");
+  expect_one_line(run_sheen({}), "subcommand is required");
   expect_one_line(run_sheen({"replay", session_, "-o", model_, "--centers", "17"}), "--centers");
   expect_one_line(run_sheen({"replay", session_, "-o", model_, "--fitter", "best"}), "--fitter");
   expect_one_line(run_sheen({"replay", session_, "-o", model_, "--hold-out", "-1"}), "--hold-out");

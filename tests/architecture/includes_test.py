@@ -13,7 +13,8 @@ ROOMS = {
     "capture": {"core", "capture"},
     "fitting": {"core", "fitting"},
     "render": {"core", "fitting", "render"},
-    "app": {"core", "capture", "fitting", "render", "app"},
+    "bench": {"core", "fitting", "bench"},
+    "app": {"core", "capture", "fitting", "render", "bench", "app"},
 }
 # Libraries that may be met in some rooms only: pattern of the include -> rooms.
 LIBRARIES = {
