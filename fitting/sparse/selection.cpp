@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/sparse/selection.h"
 
-#include "fitting/sparse/huber.h"
+#include "fitting/sparse/robust_weights.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@ namespace sheen::fitting::sparse {
 namespace {
 
 /// Weight of samples at which the economy reaches half its nominal value.
-constexpr float kEconomyOnset = 32.0f;
+constexpr float kEconomyOnset = 48.0f;
 /// Part of the samples' weight that a model may use up as degrees of freedom.
 constexpr float kMostFreedom = 0.7f;
 /// Samples below which a patch is one colour.
@@ -169,7 +169,7 @@ bool Selection::discount_suspects(std::span<const DirectedColour> samples) {
     changed = true;
   }
   const std::span<float> factors(surprise.data(), samples.size());
-  if (!huber_factors(factors, options_.tolerance)) return changed;
+  if (!robust_factors(factors, options_.tolerance)) return changed;
   design_.reweigh(factors);
   return true;
 }

@@ -34,7 +34,7 @@ class Selection {
   explicit Selection(const Options& options) : options_(options) {}
 
   /// From nothing: forward from both bases, backward, then once more with outliers weighed down
-  /// (Huber, 3 x MAD of the leave-one-out residuals) and saturated samples censored. Depends on
+  /// (by their leave-one-out residuals) and saturated samples censored. Depends on
   /// the samples only. 1 to kMaxStoredSamples samples.
   SelectedModel choose(std::span<const DirectedColour> samples);
 

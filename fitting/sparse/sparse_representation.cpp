@@ -105,7 +105,7 @@ bool SparseRepresentation::absorb_sample(std::size_t patch_idx, const Sample& sa
     const float limit = surprise * state.expected_error;
     if (squared_error <= limit * limit) return false;
   } else {
-    state.look_at = state.seen + std::max(1u, state.seen / 4);
+    state.look_at = state.seen + std::max(1u, state.seen / 3);
   }
 
   // Improve it by one step.

@@ -11,7 +11,7 @@ namespace sheen::fitting::sparse {
 
 /// Patches with as many terms as their samples ask for: one colour, a linear base, bumps
 /// (patch_model.h). While views arrive a patch is looked at again when a sample was predicted badly
-/// or its samples have grown by a quarter; `finish` chooses the terms of every touched patch anew,
+/// or its samples have grown by a third; `finish` chooses the terms of every touched patch anew,
 /// which makes the result independent of the order of views as long as all samples are kept.
 /// `threads` >= 1. Throws std::invalid_argument for bad options.
 std::unique_ptr<Representation> make_sparse_representation(const core::VertexNeighbours& neighbours,

@@ -22,7 +22,7 @@ struct Ridge {
   float slope_growth = 0.01f;  ///< per unit of weight
   float bump = 0.1f;
   float bump_growth = 0.02f;  ///< per unit of weight under the bump
-  float onset = 32.0f;        ///< weight at which half of the growth is reached
+  float onset = 96.0f;        ///< weight at which half of the growth is reached
 };
 constexpr Ridge kRidge;
 

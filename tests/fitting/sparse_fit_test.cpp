@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/registry.h"
-#include "fitting/sparse/huber.h"
 #include "fitting/sparse/light_field_model.h"
+#include "fitting/sparse/robust_weights.h"
 #include "fitting/sparse/sample_store.h"
 #include "fitting/sparse/selection.h"
 #include "tests/fitting/samples_for_tests.h"
@@ -250,15 +250,16 @@ TEST(SparseFit, LoneOutlierIsDiscountedAndHighlightIsNot) {
   EXPECT_GT(evaluate(bright, place).x(), 0.6f);
 }
 
-TEST(SparseFit, HuberWeighsByThreeDeviations) {
-  // Median 0.1: threshold 3 x 1.4826 x 0.1 = 0.44478.
-  std::array<float, 5> factors{0.1f, 0.1f, 0.1f, 0.05f, 0.88956f};
-  EXPECT_TRUE(huber_factors(factors, 0.001f));
+TEST(SparseFit, WeightsFadeBeyondFiveDeviations) {
+  // Median 0.1: threshold 5 x 1.4826 x 0.1 = 0.7413. At twice that the factor is 1 / 4.
+  std::array<float, 5> factors{0.1f, 0.1f, 0.74f, 0.05f, 1.4826f};
+  EXPECT_TRUE(robust_factors(factors, 0.001f));
   EXPECT_EQ(factors[0], 1.0f);
-  EXPECT_LT(factors[4], 0.51f);
-  EXPECT_GT(factors[4], 0.0f);
-  std::array<float, 3> calm{0.0f, 0.0f, 0.02f};
-  EXPECT_FALSE(huber_factors(calm, 0.01f));
+  EXPECT_EQ(factors[2], 1.0f);
+  EXPECT_NEAR(factors[4], 0.25f, 1e-5f);
+  // The floor stands in for a median of zero: threshold 5 x 0.01.
+  std::array<float, 3> calm{0.0f, 0.0f, 0.04f};
+  EXPECT_FALSE(robust_factors(calm, 0.01f));
 }
 
 TEST(SampleStore, KeepsTheExtremesWhenFull) {
