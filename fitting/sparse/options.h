@@ -3,7 +3,7 @@
 
 namespace sheen::fitting::sparse {
 
-/// How sparse patches are grown (docs/algorithm.md).
+/// How sparse patches are grown.
 struct Options {
   /// Error that nobody minds, sRGB, in (0, 1): below it no term is worth its bytes.
   float tolerance = 0.02f;

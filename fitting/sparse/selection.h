@@ -28,7 +28,7 @@ struct SelectedModel {
 ///
 /// with GCV = mean r^2 / (1 - df / n)^2 and n the weight of the samples. The economy grows with n
 /// to its nominal value: with a dozen samples a term that is wrong costs little and one that is
-/// missing much. Holds the workspace (about 150 KB): one per thread.
+/// missing much. Holds the workspace (about 65 KB): one per thread.
 class Selection {
  public:
   explicit Selection(const Options& options) : options_(options) {}

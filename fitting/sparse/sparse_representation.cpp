@@ -19,7 +19,7 @@
 namespace sheen::fitting::sparse {
 namespace {
 
-/// What is known of a patch besides its model: 56 bytes and 12 per kept sample.
+/// What is known of a patch besides its model: 48 bytes and 12 per kept sample.
 struct PatchState {
   SampleStore samples;
   std::uint32_t seen = 0;     ///< samples absorbed

@@ -16,7 +16,7 @@ constexpr float kReach = 0.1f;
 
 /// Pull on the base's slopes and on bumps: a constant part that fades as samples arrive, and a part
 /// that grows with them, because what bends a fit beyond its samples is pose and mesh error, which
-/// does not average out along an arc: without it more samples make arcs worse (docs/algorithm.md).
+/// does not average out along an arc: without it more samples make arcs worse.
 struct Ridge {
   float slope = 0.02f;
   float slope_growth = 0.01f;  ///< per unit of weight
