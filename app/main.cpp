@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "app/commands/compare.h"
 #include "app/commands/evaluate.h"
 #include "app/commands/info.h"
 #include "app/commands/render.h"
@@ -42,6 +43,7 @@ int main(int argc, char** argv) {
   app::add_replay_command(program, context);
   app::add_render_command(program, context);
   app::add_evaluate_command(program, context);
+  app::add_compare_command(program, context);
   app::add_synth_command(program, context);
   app::add_info_command(program, context);
 

@@ -16,6 +16,7 @@ namespace sheen::app {
 namespace {
 
 constexpr int kDefaultHoldOut = 5;
+constexpr int kLargestHoldOut = 1'000'000;
 
 struct CompareOptions {
   std::vector<std::filesystem::path> folders;
@@ -161,7 +162,8 @@ void add_compare_command(CLI::App& program, CommandContext& context) {
   command
       ->add_option("--hold-out", options->session.hold_out,
                    "Keep every N-th frame out of the fits and measure on those")
-      ->check(CLI::PositiveNumber)
+      ->check(CLI::Range(2, kLargestHoldOut).description(""))
+      ->type_name("N")
       ->capture_default_str();
   add_session_options(*command, options->session);
   add_common_options(*command, context);

@@ -22,11 +22,12 @@ double bytes(const ComparedCandidate& row) {
   return static_cast<double>(row.measured.model_bytes);
 }
 
-/// "8 %" below one, "1.3 times" above.
-std::string share(double part, double whole) {
+/// "8 % of its bytes" below one, "1.3 times its bytes" above.
+std::string share(double part, double whole, const char* of_what) {
   const double ratio = part / whole;
-  if (ratio < 0.01) return fmt::format("{:.2g} %", 100 * ratio);
-  return ratio < 0.995 ? fmt::format("{:.0f} %", 100 * ratio) : fmt::format("{:.1f} times", ratio);
+  if (ratio < 0.01) return fmt::format("{:.2g} % of its {}", 100 * ratio, of_what);
+  if (ratio < 0.995) return fmt::format("{:.0f} % of its {}", 100 * ratio, of_what);
+  return fmt::format("{:.{}f} times its {}", ratio, ratio < 9.95 ? 1 : 0, of_what);
 }
 
 const ComparedCandidate& most_accurate(Rows rows) {
@@ -56,20 +57,18 @@ const ComparedCandidate* next_smaller(Rows rows, const ComparedCandidate& pick) 
 }
 
 std::string against_best(const ComparedCandidate& pick, const ComparedCandidate& best) {
-  return fmt::format(
-      "{:.1f} dB below the best, \"{}\", at {} of its bytes and {} of its fitting "
-      "time",
-      psnr(best) - psnr(pick), best.candidate.label, share(bytes(pick), bytes(best)),
-      share(pick.measured.fit_ms, best.measured.fit_ms));
+  return fmt::format("{:.1f} dB below the best, \"{}\", at {} and {}", psnr(best) - psnr(pick),
+                     best.candidate.label, share(bytes(pick), bytes(best), "bytes"),
+                     share(pick.measured.fit_ms, best.measured.fit_ms, "fitting time"));
 }
 
 std::string against_smaller(Rows rows, const ComparedCandidate& pick) {
   const ComparedCandidate* next = next_smaller(rows, pick);
   if (next == nullptr) return "the most accurate and the smallest of all compared";
   return fmt::format(
-      "the most accurate of all compared; the best of the smaller ones, \"{}\", "
-      "loses {:.1f} dB at {} of its bytes",
-      next->candidate.label, psnr(pick) - psnr(*next), share(bytes(*next), bytes(pick)));
+      "the most accurate of all compared; the best of the smaller ones, \"{}\", loses {:.1f} dB at "
+      "{}",
+      next->candidate.label, psnr(pick) - psnr(*next), share(bytes(*next), bytes(pick), "bytes"));
 }
 
 }  // namespace

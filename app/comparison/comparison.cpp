@@ -80,7 +80,8 @@ std::vector<std::string> session_names(const std::vector<std::filesystem::path>&
   std::vector<std::string> names;
   for (const auto& folder : folders) {
     const auto full = std::filesystem::weakly_canonical(folder);
-    names.push_back(full.filename().string());
+    // "box/" names the same folder as "box".
+    names.push_back((full.has_filename() ? full : full.parent_path()).filename().string());
   }
   std::vector<std::string> unique = names;
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -47,7 +47,7 @@ struct Comparison {
   std::vector<LeftOutCandidate> left_out;
 };
 
-/// The rows of one session, with their fronts set among each other.
+/// Sets the fronts of the rows of one session among each other.
 void mark_fronts(std::span<ComparedCandidate> rows);
 
 /// Means over the sessions of every candidate measured on all of them, fronts set; `session` is

@@ -75,7 +75,7 @@ void write_page(const fs::path& staging, const nlohmann::ordered_json& document,
 
 void draw_charts(const fs::path& staging, std::vector<std::string>& notes) {
   const auto messages = staging / "messages.txt";
-  const auto status = run_program({kPython, (kAssets / "charts.py").string(),
+  const auto status = run_program({kPython, "-I", (kAssets / "charts.py").string(),
                                    (staging / "compare.csv").string(), staging.string()},
                                   messages);
   const std::string said = read_text(messages).value_or("");

@@ -73,11 +73,9 @@ Observations observe_session(const SessionOptions& options, int threads,
                      .camera = session.camera,
                      .stage_from_object = session.stage_from_object,
                      .limits = {},
-                     .footprint = 0,
                      .representation = recorder,
                      .baseline = nullptr,
                      .hold_out = {observations.has_own_held_out ? 0 : options.hold_out},
-       .photometric = {},
                      .threads = threads});
   run_pipeline(producer, threads > 1, on_frame);
   check_something_was_seen(session, producer.statistics(), recorder.statistics().samples);
