@@ -2,11 +2,8 @@
 #include "capture/pose/pose_estimator.h"
 
 #include "capture/pose/blur.h"
-#include "capture/pose/corner_refinement.h"
+#include "capture/pose/board_tags.h"
 #include "capture/pose/joint_pose.h"
-#include "capture/pose/tag_detector.h"
-
-#include <opencv2/imgproc.hpp>
 
 #include <cassert>
 #include <cmath>
@@ -15,32 +12,22 @@
 namespace sheen::capture {
 namespace {
 
-TagFamily family_of(const Board& board) {
-  const auto family = find_tag_family(board.family, board.border_bits);
-  if (!family) throw std::invalid_argument("no detector knows the tag family " + board.family);
-  return *family;
-}
-
 class TagPoseEstimator : public PoseEstimator {
  public:
   TagPoseEstimator(const Board& board, const core::CameraModel& camera, const PoseGate& gate)
-      : board_(board), camera_(camera), gate_(gate), family_(family_of(board)), detector_(family_) {
+      : board_(board), camera_(camera), gate_(gate), finder_(board, camera) {
     gate_.check();
   }
 
   PoseResult estimate(const Frame& frame) override {
     // Find the board's tags.
-    cv::cvtColor(frame.image, grey_, cv::COLOR_BGR2GRAY);
-    std::vector<TagDetection> tags = drop_ambiguous(detector_.detect(grey_));
-    std::erase_if(tags, [&](const TagDetection& tag) { return !board_.tags.contains(tag.id); });
+    const std::vector<TagDetection> tags = finder_.find(frame.image);
     if (tags.empty()) return PoseRejection::no_tags;
     if (static_cast<int>(tags.size()) < gate_.min_tags) return PoseRejection::too_few_tags;
-    for (TagDetection& tag : tags) {
-      refine_corners(grey_, camera_, family_.modules, tag.corners_px);
-    }
 
     // Refuse smeared pictures before their corners are believed.
-    const double blur_px = tag_edge_width(grey_, camera_, family_.modules, tags).value_or(0);
+    const double blur_px =
+        tag_edge_width(finder_.grey(), camera_, finder_.family().modules, tags).value_or(0);
     if (blur_px > gate_.max_blur_px) return PoseRejection::blur;
 
     // Solve for the pose and refuse one that does not explain the corners.
@@ -55,9 +42,7 @@ class TagPoseEstimator : public PoseEstimator {
   Board board_;
   core::CameraModel camera_;
   PoseGate gate_;
-  TagFamily family_;
-  TagDetector detector_;
-  cv::Mat grey_;  // kept between frames to save its allocation
+  BoardTagFinder finder_;
 };
 
 class RecordedPoseEstimator : public PoseEstimator {
