@@ -3,9 +3,11 @@
 
 #include "app/commands/replay_options.h"
 #include "app/evaluation/evaluate_views.h"
+#include "app/evaluation/posed_views.h"
 #include "app/pipeline/patch_mesh.h"
 #include "app/pipeline/pipeline.h"
 #include "app/pipeline/replay_report.h"
+#include "app/pipeline/session_board.h"
 #include "capture/pose/trajectory.h"
 #include "core/diagnostics/error.h"
 #include "core/mesh/neighbours.h"
@@ -94,12 +96,43 @@ std::vector<EvaluationSummary> evaluate_held_out(const capture::Session& session
                         [&](const ComparedView&) { progress.show(++done); });
 }
 
+/// Poses of the held-out frames, refined against the finished model.
+std::vector<PosedFrame> refine_held_out(const capture::Session& session, Producer& producer) {
+  const std::vector<PosedFrame>& held_out = producer.statistics().held_out;
+  std::vector<PosedFrame> refined;
+  refined.reserve(held_out.size());
+  for_each_view(session, held_out, [&](const capture::Frame& frame, const Eigen::Isometry3d&) {
+    refined.push_back(producer.refined(frame, held_out[refined.size()]));
+  });
+  return refined;
+}
+
+/// Refines the board where it is asked for and the poses come from its tags.
+std::optional<capture::BoardRefinement> refine_board(const capture::Session& session,
+                                                     const ReplayOptions& options,
+                                                     const CommandContext& context) {
+  if (!options.refine_board) return std::nullopt;
+  const bool from_file =
+      options.session.pose_source == PoseSource::file ||
+      (options.session.pose_source == PoseSource::automatic && session.poses.has_value());
+  if (from_file) {
+    context.note("note: the poses come from a file, --refine-board changes nothing");
+    return std::nullopt;
+  }
+  Progress progress = context.progress("refining board", 0);
+  auto refinement = refine_session_board(session, options.session.start, options.session.end,
+                                         [&](int frames_read) { progress.show(frames_read); });
+  if (!refinement) context.note("note: too few tags are seen together to refine the board");
+  return refinement;
+}
+
 /// The session's mesh, refined to the pictures' resolution when patches are texels.
-core::Mesh read_patch_mesh(const capture::Session& session, const ReplayOptions& options) {
+core::Mesh read_patch_mesh(const capture::Session& session, const ReplayOptions& options,
+                           const capture::Board* board) {
   core::Mesh mesh = read_session_mesh(session);
   if (options.patches == "vertex") return mesh;
   const auto poses =
-      make_pose_estimator(session, options.session.pose_source, options.session.gate);
+      make_pose_estimator(session, options.session.pose_source, options.session.gate, board);
   const auto footprint_m = pixel_footprint_m(session, mesh, *poses);
   if (!footprint_m) return mesh;  // the replay itself will say why no frame is posed
   return texel_mesh(mesh, *footprint_m, options.texel_px);
@@ -109,7 +142,9 @@ void run_replay(const ReplayOptions& options, const CommandContext& context) {
   // Open everything that may be wrong before the long work.
   const capture::Session session = capture::open_session(options.session.folder);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
-  const core::Mesh mesh = read_patch_mesh(session, options);
+  const auto refinement = refine_board(session, options, context);
+  const capture::Board* const board = refinement ? &refinement->board : nullptr;
+  const core::Mesh mesh = read_patch_mesh(session, options, board);
   auto frames = capture::open_frames(session, options.session.start, options.session.end);
   const std::optional<int> frame_count = frames->frame_count();
   std::unique_ptr<render::Context> gl;
@@ -123,18 +158,19 @@ void run_replay(const ReplayOptions& options, const CommandContext& context) {
 
   // Fit frame by frame.
   LightFields fields(options, mesh, context.threads);
-  Producer producer(
-      {.frames = std::move(frames),
-       .poses = make_pose_estimator(session, options.session.pose_source, options.session.gate),
-       .visibility = std::move(visibility),
-       .mesh = mesh,
-       .camera = session.camera,
-       .stage_from_object = session.stage_from_object,
-       .limits = options.limits,
-       .representation = *fields.fitted,
-       .baseline = fields.mean.get(),
-       .hold_out = {options.session.hold_out},
-       .threads = context.threads});
+  Producer producer({.frames = std::move(frames),
+                     .poses = make_pose_estimator(session, options.session.pose_source,
+                                                  options.session.gate, board),
+                     .visibility = std::move(visibility),
+                     .mesh = mesh,
+                     .camera = session.camera,
+                     .stage_from_object = session.stage_from_object,
+                     .limits = options.limits,
+                     .representation = *fields.fitted,
+                     .baseline = fields.mean.get(),
+                     .hold_out = {options.session.hold_out},
+                     .photometric = options.photometric,
+                     .threads = context.threads});
   run_producer(producer, frame_count, context);
   const ProducerStatistics& statistics = producer.statistics();
   check_something_was_seen(session, statistics, fields.fitted->statistics().samples);
@@ -159,13 +195,20 @@ void run_replay(const ReplayOptions& options, const CommandContext& context) {
                           std::count(observed.begin(), observed.end(), std::uint8_t{1})),
                       .coefficients = light_field.coefficient_count(),
                       .model_bytes = std::filesystem::file_size(options.output),
+                      .board = refinement,
                       .held_out = {},
                       .held_out_mean = {},
+                      .held_out_refined_poses = {},
                       .options = to_json(options)};
   if (!statistics.held_out.empty()) {
     auto summaries = evaluate_held_out(session, mesh, fields, statistics.held_out, context);
     report.held_out = std::move(summaries[0]);
     report.held_out_mean = std::move(summaries[1]);
+    if (options.photometric.refine_poses) {
+      const auto refined = refine_held_out(session, producer);
+      report.held_out_refined_poses =
+          std::move(evaluate_held_out(session, mesh, fields, refined, context)[0]);
+    }
   }
   context.publish(to_json(report), to_text(report) + "written  " + options.output.string() + "\n");
 }

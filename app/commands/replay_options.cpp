@@ -84,6 +84,17 @@ void add_replay_options(CLI::App& command, ReplayOptions& options) {
                   "Refuse samples seen at a smaller cosine to the normal")
       ->check(CLI::Range(0.0, 0.99))
       ->capture_default_str();
+  command.add_flag("--refine-poses,!--no-refine-poses", options.photometric.refine_poses,
+                   "Refine every pose photometrically against the model that is being built");
+  command
+      .add_option("--pose-error", options.photometric.pose_error_px,
+                  "With --refine-poses: error to expect of the given poses, pixels on the object")
+      ->check(CLI::Range(0.01, 10.0))
+      ->capture_default_str();
+  command.add_flag("--refine-board", options.refine_board,
+                   "Refine where the tags lie from the whole recording before posing frames");
+  command.add_flag("--exposure,!--no-exposure", options.photometric.exposure,
+                   "Estimate every frame's exposure against the model and take it out");
   command
       .add_option("--mean-out", options.mean_output,
                   "Also save the mean colours, what a textured mesh would show")
@@ -104,7 +115,12 @@ nlohmann::ordered_json to_json(const ReplayOptions& options) {
           {"visibility", name_in(kVisibilities, options.visibility)},
           {"hold_out", options.session.hold_out},
           {"start", options.session.start},
-          {"min_cosine", options.limits.min_cosine}};
+          {"min_cosine", options.limits.min_cosine},
+          {"refine_poses", options.photometric.refine_poses},
+          {"pose_error_px", options.photometric.pose_error_px},
+          {"refine_board", options.refine_board},
+          {"exposure", options.photometric.exposure},
+          {"texel_px", options.texel_px}};
 }
 
 }  // namespace sheen::app

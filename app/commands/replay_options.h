@@ -23,11 +23,13 @@ struct ReplayOptions {
   std::filesystem::path mean_output;   ///< the mean colours as a model; empty: not written
   std::filesystem::path poses_output;  ///< estimated poses, TUM form; empty: not written
   std::string representation;
-  std::string patches = "vertex";      ///< or "texel": as fine as the pictures resolve
-  double texel_px = 1.5;               ///< longest edge between texel patches, pixels, > 0
+  std::string patches = "vertex";  ///< or "texel": as fine as the pictures resolve
+  double texel_px = 1.5;           ///< longest edge between texel patches, pixels, > 0
   fitting::iwls::Options iwls;
   VisibilityMethod visibility = VisibilityMethod::rays;
   core::SamplingLimits limits;
+  PhotometricOptions photometric;
+  bool refine_board = false;  ///< refine the tags' places before their poses are used
 };
 
 void add_replay_options(CLI::App& command, ReplayOptions& options);

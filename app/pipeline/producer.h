@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "app/pipeline/photometric_aligner.h"
 #include "capture/pose/pose_estimator.h"
 #include "capture/source/frame_source.h"
 #include "core/diagnostics/stage_timer.h"
@@ -13,6 +14,7 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +36,8 @@ struct ProducerStatistics {
   std::map<std::string, int> pose_rejections;  ///< by name of PoseRejection
   std::array<std::size_t, core::kVertexRejectionCount> vertex_rejections{};
   std::vector<double> reprojection_px;  ///< of frames posed from tags
+  std::vector<double> refined_px;       ///< mean motion of every frame whose pose was refined
+  std::vector<double> gains;            ///< exposure of every frame that told it
 };
 
 /// Which frames stay out of the fit: index % every == every / 2; 0 keeps none out.
@@ -67,6 +71,7 @@ class Producer {
     fitting::Representation& representation;
     fitting::Representation* baseline;  ///< absorbs the same samples for comparison; may be null
     HoldOut hold_out;
+    PhotometricOptions photometric = {};
     int threads = 1;
   };
 
@@ -75,19 +80,26 @@ class Producer {
   /// Processes the next frame; nothing at the end of the recording.
   std::optional<FrameReport> step();
 
+  /// A frame's pose refined against the light field as it is now, or as it was when that cannot be
+  /// said. Only with `refine_poses`; changes no statistics.
+  PosedFrame refined(const capture::Frame& frame, PosedFrame posed);
+
   [[nodiscard]] const ProducerStatistics& statistics() const { return statistics_; }
   [[nodiscard]] const core::StageTimer& timer() const { return timer_; }
 
  private:
   std::optional<capture::FramePose> pose_of(const capture::Frame& frame);
-  void observe(const capture::Frame& frame, const Eigen::Isometry3d& camera_from_stage);
-
+  void observe(const capture::Frame& frame, PosedFrame& posed);
+  void see(const Eigen::Isometry3d& camera_from_object);
+  std::optional<core::Alignment> align(const capture::Frame& frame, PosedFrame& posed);
+  void correct_exposure();
   fitting::ModelUpdate fit();
 
   Parts parts_;
   std::vector<core::TangentFrame> tangent_frames_;
   core::VertexView view_;
   core::SampleBatch batch_;
+  std::optional<PhotometricAligner> aligner_;  ///< where something is adjusted
   ProducerStatistics statistics_;
   core::StageTimer timer_;
 };

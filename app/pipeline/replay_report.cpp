@@ -55,6 +55,23 @@ nlohmann::ordered_json held_out_json(const std::optional<EvaluationSummary>& sum
   return document;
 }
 
+/// Frames whose exposure was found and the gains' range.
+nlohmann::ordered_json exposure_json(const std::vector<double>& gains) {
+  if (gains.empty()) return {{"frames", 0}};
+  const auto [least, most] = std::minmax_element(gains.begin(), gains.end());
+  return {
+      {"frames", gains.size()}, {"least", *least}, {"median", median_of(gains)}, {"most", *most}};
+}
+
+nlohmann::ordered_json board_json(const std::optional<capture::BoardRefinement>& board) {
+  if (!board) return nullptr;
+  return {{"views", board->views},
+          {"tags", board->tags},
+          {"rms_before_px", board->rms_before_px},
+          {"rms_after_px", board->rms_after_px},
+          {"median_shift_mm", 1000 * board->median_shift_m}};
+}
+
 std::string held_out_row(const std::string& name, const EvaluationSummary& summary) {
   return fmt::format("  {:<22}{:>8.2f} dB{:>8.4f}{:>9.4f}\n", name, summary.mean.psnr_db,
                      summary.mean.ssim, summary.mean.rmse);
@@ -89,6 +106,7 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
   const ProducerStatistics& frames = report.frames;
   nlohmann::ordered_json stages;
   for (const char* stage : kStages) stages[stage] = to_json(report.timer.summary(stage));
+  stages["align"] = to_json(report.timer.summary("align"));
   nlohmann::ordered_json vertices;
   for (std::size_t i = 1; i < frames.vertex_rejections.size(); ++i) {
     vertices[std::string(name_of(static_cast<core::VertexRejection>(i)))] =
@@ -116,6 +134,11 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
           {"representation", report.representation},
           {"held_out", held_out_json(report.held_out)},
           {"held_out_mean_colour", held_out_json(report.held_out_mean)},
+          {"held_out_refined_poses", held_out_json(report.held_out_refined_poses)},
+          {"pose_refinement",
+           {{"refined", frames.refined_px.size()}, {"motion_px", median_of(frames.refined_px)}}},
+          {"board_refinement", board_json(report.board)},
+          {"exposure", exposure_json(frames.gains)},
           {"reprojection_px", frames.reprojection_px.empty()
                                   ? nlohmann::ordered_json(nullptr)
                                   : nlohmann::ordered_json(median_of(frames.reprojection_px))},
@@ -136,6 +159,9 @@ std::string to_text(const ReplayReport& report) {
                         report.held_out->views.size());
     text += held_out_row(report.representation, *report.held_out);
     if (report.held_out_mean) text += held_out_row("mean colour", *report.held_out_mean);
+    if (report.held_out_refined_poses) {
+      text += held_out_row("with refined poses", *report.held_out_refined_poses);
+    }
   }
   return text + timing_text(report.timer);
 }

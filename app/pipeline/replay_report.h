@@ -3,6 +3,7 @@
 
 #include "app/evaluation/view_evaluation.h"
 #include "app/pipeline/producer.h"
+#include "capture/pose/board_refinement.h"
 
 #include <nlohmann/json.hpp>
 
@@ -22,8 +23,11 @@ struct ReplayReport {
   std::size_t patches_observed = 0;
   std::size_t coefficients = 0;
   std::size_t model_bytes = 0;
+  std::optional<capture::BoardRefinement> board;   ///< where the tags were refined
   std::optional<EvaluationSummary> held_out;       ///< of the fitted representation
   std::optional<EvaluationSummary> held_out_mean;  ///< of the mean colours, on the same views
+  /// Of the fitted representation, with the held-out poses refined against it too.
+  std::optional<EvaluationSummary> held_out_refined_poses;
   nlohmann::ordered_json options;
 };
 

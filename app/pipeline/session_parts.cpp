@@ -18,7 +18,8 @@ constexpr float kSmallestObject_m = 0.001f;
 
 std::unique_ptr<capture::PoseEstimator> make_pose_estimator(const capture::Session& session,
                                                             PoseSource source,
-                                                            const capture::PoseGate& gate) {
+                                                            const capture::PoseGate& gate,
+                                                            const capture::Board* board) {
   const auto session_file = session.folder / "session.json";
   const bool from_file =
       source == PoseSource::file || (source == PoseSource::automatic && session.poses);
@@ -34,8 +35,8 @@ std::unique_ptr<capture::PoseEstimator> make_pose_estimator(const capture::Sessi
     throw core::bad_input(session_file, "has no board",
                           "name a board.yaml under \"board\" or take the poses from a file");
   }
-  return capture::make_tag_pose_estimator(capture::read_board(*session.board), session.camera,
-                                          gate);
+  return capture::make_tag_pose_estimator(
+      board != nullptr ? *board : capture::read_board(*session.board), session.camera, gate);
 }
 
 core::Mesh read_session_mesh(const capture::Session& session) {

@@ -12,10 +12,12 @@ namespace sheen::app {
 /// Where poses come from: `automatic` takes poses.txt when the session has one, else the tags.
 enum class PoseSource { automatic, tags, file };
 
-/// Throws core::Error (bad_input) when the session lacks what `source` asks for.
+/// Throws core::Error (bad_input) when the session lacks what `source` asks for. `board` replaces
+/// the session's own when it is not null.
 std::unique_ptr<capture::PoseEstimator> make_pose_estimator(const capture::Session& session,
                                                             PoseSource source,
-                                                            const capture::PoseGate& gate);
+                                                            const capture::PoseGate& gate,
+                                                            const capture::Board* board = nullptr);
 
 /// The session's mesh, checked to be of a size that a handheld camera can walk round: throws
 /// core::Error (bad_input) for meshes in millimetres and the like.

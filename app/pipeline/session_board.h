@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/pose/board_refinement.h"
+#include "capture/session/session.h"
+
+#include <functional>
+#include <optional>
+
+namespace sheen::app {
+
+/// Reads the frames [start, end) of a session once for their tags and refines the board from them;
+/// at most a few hundred, spread evenly. Held-out frames take part: only their tags are looked at,
+/// never the object. Nothing when the tags do not tell. Throws core::Error (bad_input) for a
+/// session without a board.
+std::optional<capture::BoardRefinement> refine_session_board(
+    const capture::Session& session, int start, std::optional<int> end,
+    const std::function<void(int frames_read)>& on_frame);
+
+}  // namespace sheen::app

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// What `replay` adjusts by itself: the board, the poses, the exposure.
+#include "capture/pose/board.h"
+#include "capture/pose/trajectory.h"
+#include "tests/app/program.h"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace sheen::tests {
+namespace {
+
+/// The sample session with every tag of its board.yaml displaced by about half a millimetre.
+std::filesystem::path session_with_displaced_tags(const std::filesystem::path& folder) {
+  const auto session = folder / "displaced";
+  std::filesystem::create_directory(session);
+  for (const char* name : {"session.json", "camera.yaml", "object.ply", "frames.avi"}) {
+    std::filesystem::copy(sample_session() / name, session / name);
+  }
+  capture::Board board = capture::read_board(sample_session() / "board.yaml");
+  std::mt19937 random(9);
+  std::normal_distribution<double> shift_m(0, 0.0005);
+  for (auto& [id, tag] : board.tags) {
+    tag.stage_from_tag.translation() += Eigen::Vector3d(shift_m(random), shift_m(random), 0);
+  }
+  capture::write_board(session / "board.yaml", board);
+  return session;
+}
+
+/// Root mean square over frames of how far the camera is from its true place, after the one rigid
+/// motion of the stage that fits all frames best: displaced tags leave the stage frame itself open.
+double relative_error_m(const std::filesystem::path& estimate) {
+  const auto truth = capture::read_trajectory(sample_session() / "truth_poses.txt");
+  const auto found = capture::read_trajectory(estimate);
+  Eigen::Matrix3Xd from(3, static_cast<Eigen::Index>(found.entries().size()));
+  Eigen::Matrix3Xd to(3, from.cols());
+  Eigen::Index column = 0;
+  for (const auto& entry : found.entries()) {
+    for (const auto& reference : truth.entries()) {
+      if (reference.stamp != entry.stamp) continue;
+      from.col(column) = entry.stage_from_camera.translation();
+      to.col(column++) = reference.stage_from_camera.translation();
+    }
+  }
+  from.conservativeResize(3, column);
+  to.conservativeResize(3, column);
+  const Eigen::Isometry3d motion(Eigen::umeyama(from, to, false));
+  return std::sqrt(((motion * from) - to).squaredNorm() / static_cast<double>(column));
+}
+
+nlohmann::json replay(std::vector<std::string> arguments) {
+  arguments.insert(arguments.begin(), "replay");
+  arguments.insert(arguments.end(), {"--end", "60", "--json", "--quiet"});
+  const ProgramRun run = run_sheen(arguments);
+  EXPECT_EQ(run.exit_code, 0) << run.standard_error;
+  return run.exit_code == 0 ? run.json() : nlohmann::json();
+}
+
+TEST(RefineBoard, HalvesThePoseErrorOfDisplacedTags) {
+  const TemporaryFolder folder;
+  const auto session = session_with_displaced_tags(folder.path());
+  const auto model = folder.path() / "model.glb";
+  const auto before = folder.path() / "before.txt";
+  const auto after = folder.path() / "after.txt";
+  replay({session, "-o", model, "--poses-out", before});
+  const auto report = replay({session, "-o", model, "--poses-out", after, "--refine-board"});
+  ASSERT_FALSE(report["board_refinement"].is_null());
+  EXPECT_LT(report["board_refinement"]["rms_after_px"].get<double>(),
+            0.5 * report["board_refinement"]["rms_before_px"].get<double>());
+  EXPECT_LT(relative_error_m(after), 0.5 * relative_error_m(before));
+}
+
+TEST(RefinePoses, LeavesGoodTagPosesGood) {
+  // The guard's promise: poses that are right to 0.03 px may not be moved by more than what is
+  // expected of their error, 0.3 px, which is 0.5 mm at this distance and focal length.
+  const TemporaryFolder folder;
+  const auto poses = folder.path() / "poses.txt";
+  const auto report = replay({sample_session(), "-o", folder.path() / "model.glb", "--poses-out",
+                              poses, "--refine-poses", "--hold-out", "10"});
+  EXPECT_LT(report["pose_refinement"]["motion_px"].get<double>(), 0.3);
+  EXPECT_FALSE(report["held_out_refined_poses"].is_null());
+}
+
+TEST(Exposure, IsFoundNearOneForASteadyCamera) {
+  const TemporaryFolder folder;
+  const auto report = replay({sample_session(), "-o", folder.path() / "model.glb", "--exposure"});
+  EXPECT_GT(report["exposure"]["frames"].get<int>(), 0);
+  EXPECT_NEAR(report["exposure"]["median"].get<double>(), 1.0, 0.02);
+}
+
+}  // namespace
+}  // namespace sheen::tests
