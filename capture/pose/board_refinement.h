@@ -21,9 +21,9 @@ struct BoardRefinement {
 };
 
 /// Joint refinement of where the tags lie and of every view's pose (bundle adjustment over tag
-/// corners, Huber loss). Each tag stays a square of its size, which fixes the scale; the stage
-/// frame stays where it is: the refined tags are laid on the given ones by the best rigid motion,
-/// so that T_stage_object keeps its meaning. `views` holds the tags detected in each picture, ids
+/// corners, Huber loss). Each tag stays a square; all sizes change by one common factor. The stage
+/// frame and its scale stay: the refined tags are laid on the given ones by the best similarity, so
+/// that T_stage_object keeps its meaning. `views` holds the tags detected in each picture, ids
 /// unique within one. Nothing when fewer than three views pose or no two tags are seen together.
 std::optional<BoardRefinement> refine_board(const Board& board, const core::CameraModel& camera,
                                             const std::vector<std::vector<TagDetection>>& views);

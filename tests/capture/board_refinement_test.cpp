@@ -46,8 +46,8 @@ Board displaced(const Board& board, double shift_m, unsigned seed) {
   return result;
 }
 
-/// Largest distance of a corner of `a` from the same corner of `b` after the rigid motion that lays
-/// all of `a` on `b` best: what a choice of frame cannot explain.
+/// Largest distance of a corner of `a` from the same corner of `b` after the similarity that lays
+/// all of `a` on `b` best: what a choice of frame and scale cannot explain.
 double largest_difference_m(const Board& a, const Board& b) {
   Eigen::Matrix3Xd from(3, static_cast<Eigen::Index>(4 * a.tags.size()));
   Eigen::Matrix3Xd to(3, from.cols());
@@ -58,7 +58,7 @@ double largest_difference_m(const Board& a, const Board& b) {
       to.col(column) = b.tags.at(id).corners_in_stage()[static_cast<std::size_t>(c)];
     }
   }
-  const Eigen::Isometry3d motion(Eigen::umeyama(from, to, false));
+  const Eigen::Affine3d motion(Eigen::umeyama(from, to, true));
   return ((motion * from) - to).colwise().norm().maxCoeff();
 }
 
@@ -80,8 +80,8 @@ TEST(BoardRefinement, FindsDisplacedTagsToMachinePrecisionWithoutNoise) {
 }
 
 TEST(BoardRefinement, KeepsTheStageFrameOfTheGivenBoard) {
-  // The refined corners lie on the given ones as well as any rigid motion can lay them: the best
-  // motion left to find is none.
+  // The refined corners lie on the given ones as well as any similarity can lay them: no mean
+  // shift is left.
   const unsigned seed = 4;
   SCOPED_TRACE(seed);
   const auto camera = make_camera(1280, 720, true);
