@@ -9,7 +9,9 @@
 #include "core/diagnostics/error.h"
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <stdexcept>
 
 namespace {
 
@@ -48,6 +50,8 @@ int main(int argc, char** argv) {
   app::add_info_command(program, context);
 
   app::watch_for_interrupts();
+  // FFmpeg reports damaged pictures on stderr by itself; ours is the one line that counts.
+  setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
   try {
     program.parse(argc, argv);
     return kDone;
@@ -59,6 +63,9 @@ int main(int argc, char** argv) {
   } catch (const app::Interrupted& interruption) {
     std::fprintf(stderr, "sheen: %s\n", interruption.what());
     return kInterrupted;
+  } catch (const std::invalid_argument& error) {
+    std::fprintf(stderr, "sheen: %s\n", error.what());
+    return kBadInput;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "sheen: %s\n", error.what());
     return kRunFailed;

@@ -4,12 +4,14 @@
 #include "app/commands/replay_options.h"
 #include "app/evaluation/evaluate_views.h"
 #include "app/evaluation/posed_views.h"
+#include "app/pipeline/check_seen.h"
 #include "app/pipeline/patch_mesh.h"
 #include "app/pipeline/pipeline.h"
 #include "app/pipeline/replay_report.h"
 #include "app/pipeline/session_board.h"
 #include "capture/pose/trajectory.h"
 #include "core/diagnostics/error.h"
+#include "core/files/staged_output.h"
 #include "core/mesh/neighbours.h"
 #include "core/visibility/ray_visibility.h"
 #include "fitting/model_file/model_file.h"
@@ -28,9 +30,10 @@ struct LightFields {
 
   LightFields(const ReplayOptions& options, const core::Mesh& mesh, int threads) {
     const auto neighbours = core::vertex_neighbours(mesh);
-    const fitting::RepresentationOptions fit_options{options.iwls, threads};
-    fitted = fitting::make_representation(options.representation, neighbours, fit_options);
-    if (options.representation != "mean") {
+    const fitting::RepresentationOptions fit_options{
+        .iwls = options.iwls, .threads = threads, .sparse = options.sparse};
+    fitted = fitting::make_representation(options.registered_name(), neighbours, fit_options);
+    if (options.registered_name() != "mean") {
       mean = fitting::make_representation("mean", neighbours, fit_options);
     }
   }
@@ -51,26 +54,6 @@ void run_producer(Producer& producer, std::optional<int> frame_count,
   run_pipeline(producer, context.threads > 1, [&](const FrameReport& report) {
     progress.show(report.frames_read, fmt::format("{} posed", report.frames_posed));
   });
-}
-
-/// A model of nothing helps nobody: say why nothing was seen.
-void check_something_was_seen(const capture::Session& session, const ProducerStatistics& frames,
-                              std::size_t samples) {
-  if (frames.posed.empty()) {
-    std::string reasons;
-    for (const auto& [reason, count] : frames.pose_rejections) {
-      reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
-    }
-    throw core::bad_input(
-        session.folder,
-        fmt::format("none of {} frames got a pose ({})", frames.frames_read, reasons),
-        "check that board.yaml describes the printed board and that the stage is "
-        "in view and sharp");
-  }
-  if (samples == 0) {
-    throw core::bad_input(session.mesh, "is not seen in any posed frame",
-                          "check T_stage_object and that mesh and board are in metres");
-  }
 }
 
 void write_poses(const std::filesystem::path& path, const std::vector<PosedFrame>& posed) {
@@ -140,6 +123,9 @@ core::Mesh read_patch_mesh(const capture::Session& session, const ReplayOptions&
 
 void run_replay(const ReplayOptions& options, const CommandContext& context) {
   // Open everything that may be wrong before the long work.
+  for (const auto& path : {options.output, options.mean_output, options.poses_output}) {
+    if (!path.empty()) core::check_writable(path);
+  }
   const capture::Session session = capture::open_session(options.session.folder);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
   const auto refinement = refine_board(session, options, context);
@@ -189,7 +175,7 @@ void run_replay(const ReplayOptions& options, const CommandContext& context) {
   ReplayReport report{.frames = statistics,
                       .timer = producer.timer(),
                       .fit = fields.fitted->statistics(),
-                      .representation = options.representation,
+                      .representation = options.registered_name(),
                       .patches = light_field.patch_count(),
                       .patches_observed = static_cast<std::size_t>(
                           std::count(observed.begin(), observed.end(), std::uint8_t{1})),

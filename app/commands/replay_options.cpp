@@ -3,16 +3,20 @@
 
 #include "fitting/registry.h"
 
+#include <algorithm>
 #include <map>
+#include <vector>
 
 namespace sheen::app {
 namespace {
 
 namespace iwls = fitting::iwls;
 
-const std::map<std::string, iwls::Construction> kFitters{{"quadtree", iwls::Construction::quadtree},
-                                                         {"adaptive", iwls::Construction::adaptive},
-                                                         {"batch", iwls::Construction::batch}};
+const std::string kSparse = "sparse";
+const std::map<std::string, iwls::Construction> kConstructions{
+    {"quadtree", iwls::Construction::quadtree},
+    {"adaptive", iwls::Construction::adaptive},
+    {"batch", iwls::Construction::batch}};
 const std::map<std::string, iwls::Layout> kLayouts{{"grid", iwls::Layout::grid},
                                                    {"jittered-grid", iwls::Layout::jittered_grid},
                                                    {"disk", iwls::Layout::disk},
@@ -31,36 +35,76 @@ std::string name_in(const std::map<std::string, Value>& names, Value value) {
 
 /// An option that takes one of a few words; the words and the default end up in the help.
 template <typename Value>
-void add_choice(CLI::App& command, const std::string& flag, Value& value,
-                const std::map<std::string, Value>& names, const std::string& text) {
+CLI::Option* add_choice(CLI::App& command, const std::string& flag, Value& value,
+                        const std::map<std::string, Value>& names, const std::string& text) {
   std::string words;
   for (const auto& [name, unused] : names) words += (words.empty() ? "" : "|") + name;
-  command.add_option(flag, value, text + " (default " + name_in(names, value) + ")")
+  return command.add_option(flag, value, text + " (default " + name_in(names, value) + ")")
       ->transform(CLI::CheckedTransformer(names, CLI::ignore_case).description(""))
       ->type_name(words);
 }
 
+/// The sparse fitter needs no settings; whoever sets centres means one of the paper's
+/// constructions.
+void add_fitter_options(CLI::App& command, ReplayOptions& options) {
+  const CLI::Option* fitter =
+      command
+          .add_option(
+              "--fitter", options.fitter,
+              "How patches are fitted: sparse (default) gives each as many terms as it needs; "
+              "quadtree, adaptive and batch are the paper's constructions")
+          ->check(CLI::IsMember({"sparse", "quadtree", "adaptive", "batch"}).description(""))
+          ->type_name("sparse|quadtree|adaptive|batch");
+  command
+      .add_option("--tolerance", options.sparse.tolerance,
+                  "With sparse: error that nobody minds, of 1; more is smaller")
+      ->check(CLI::Range(0.0005, 0.5))
+      ->capture_default_str();
+  const std::vector<const CLI::Option*> of_centres{
+      add_choice(command, "--layout", options.iwls.layout, kLayouts,
+                 "With centres: where they lie on the disc of directions"),
+      command.add_option("--centers", options.iwls.centers, "With centres: how many per patch")
+          ->check(CLI::IsMember({16, 64}))
+          ->capture_default_str(),
+      add_choice(command, "--terms", options.iwls.terms, kTerms,
+                 "With centres: polynomial terms of each"),
+      command.add_flag("--faithful", options.iwls.faithful,
+                       "Exactly the paper's rules: centres of 3 terms, no ridge")};
+  command.parse_complete_callback([&options, fitter, of_centres] {
+    const bool centres_are_meant =
+        std::any_of(of_centres.begin(), of_centres.end(),
+                    [](const CLI::Option* option) { return option->count() > 0; });
+    if (fitter->count() == 0 && centres_are_meant) options.fitter = "quadtree";
+    if (options.fitter == kSparse && centres_are_meant) {
+      throw CLI::ValidationError(
+          "--fitter sparse has no centres: leave out --layout, --centers, "
+          "--terms and --faithful");
+    }
+    if (options.fitter != kSparse) options.iwls.construction = kConstructions.at(options.fitter);
+  });
+}
+
 }  // namespace
 
+std::string ReplayOptions::registered_name() const {
+  return representation == "iwls" && fitter == kSparse ? kSparse : representation;
+}
+
 void add_replay_options(CLI::App& command, ReplayOptions& options) {
-  options.representation = fitting::representation_names().front();
+  options.representation = "iwls";
   command.add_option("session", options.session.folder, "Session folder")->required();
   command.add_option("-o,--output", options.output, "Model to write (.glb)")
       ->required()
+      ->check(CLI::Validator(
+          [](const std::string& path) {
+            return path.ends_with(".glb") ? std::string() : path + " does not end in .glb";
+          },
+          ""))
       ->type_name("MODEL.glb");
   command.add_option("--representation", options.representation, "How patches are modelled")
       ->check(CLI::IsMember(fitting::representation_names()))
       ->capture_default_str();
-  add_choice(command, "--fitter", options.iwls.construction, kFitters,
-             "How centres are fitted while samples arrive");
-  add_choice(command, "--layout", options.iwls.layout, kLayouts,
-             "Where centres lie on the disc of directions");
-  command.add_option("--centers", options.iwls.centers, "Centres per patch")
-      ->check(CLI::IsMember({16, 64}))
-      ->capture_default_str();
-  add_choice(command, "--terms", options.iwls.terms, kTerms, "Polynomial terms per centre");
-  command.add_flag("--faithful", options.iwls.faithful,
-                   "Exactly the paper's rules: 3 terms, no ridge");
+  add_fitter_options(command, options);
   command
       .add_option("--patches", options.patches,
                   "vertex: one patch per vertex; texel: as fine as the pictures resolve")
@@ -106,7 +150,8 @@ void add_replay_options(CLI::App& command, ReplayOptions& options) {
 nlohmann::ordered_json to_json(const ReplayOptions& options) {
   return {{"session", options.session.folder.string()},
           {"representation", options.representation},
-          {"fitter", name_in(kFitters, options.iwls.construction)},
+          {"fitter", options.fitter},
+          {"tolerance", options.sparse.tolerance},
           {"layout", name_in(kLayouts, options.iwls.layout)},
           {"centers", options.iwls.centers},
           {"terms", name_in(kTerms, options.iwls.terms)},

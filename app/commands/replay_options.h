@@ -4,6 +4,7 @@
 #include "app/commands/session_options.h"
 #include "core/samples/vertex_view.h"
 #include "fitting/iwls/options.h"
+#include "fitting/sparse/options.h"
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -22,14 +23,19 @@ struct ReplayOptions {
   std::filesystem::path output;        ///< the model
   std::filesystem::path mean_output;   ///< the mean colours as a model; empty: not written
   std::filesystem::path poses_output;  ///< estimated poses, TUM form; empty: not written
-  std::string representation;
-  std::string patches = "vertex";  ///< or "texel": as fine as the pictures resolve
-  double texel_px = 1.5;           ///< longest edge between texel patches, pixels, > 0
-  fitting::iwls::Options iwls;
+  std::string representation;          ///< name in the registry, or "iwls" for what `fitter` says
+  std::string fitter = "sparse";       ///< sparse, or one of the paper's constructions
+  std::string patches = "vertex";      ///< or "texel": as fine as the pictures resolve
+  double texel_px = 1.5;               ///< longest edge between texel patches, pixels, > 0
+  fitting::iwls::Options iwls;         ///< for every fitter but sparse
+  fitting::sparse::Options sparse;     ///< for the sparse fitter
   VisibilityMethod visibility = VisibilityMethod::rays;
   core::SamplingLimits limits;
   PhotometricOptions photometric;
   bool refine_board = false;  ///< refine the tags' places before their poses are used
+
+  /// Name of the registry's representation that `representation` and `fitter` come to.
+  [[nodiscard]] std::string registered_name() const;
 };
 
 void add_replay_options(CLI::App& command, ReplayOptions& options);

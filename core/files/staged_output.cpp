@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <fstream>
 #include <sstream>
 #include <string>
 #include <system_error>
@@ -85,6 +86,13 @@ void StagedOutput::commit() {
   }
   fs::rename(staged_path_, final_path_, failure);
   if (failure) throw cannot_replace(final_path_, failure);
+}
+
+void check_writable(const std::filesystem::path& path) {
+  const StagedOutput probe(path);
+  if (!std::ofstream(probe.path())) {
+    throw bad_input(path, "cannot be written", "check the folder and its permissions");
+  }
 }
 
 }  // namespace sheen::core

@@ -30,4 +30,8 @@ class StagedOutput {
   std::filesystem::path staged_path_;
 };
 
+/// Throws Error (bad_input) when nothing can be written at `path`: asked before long work, so that
+/// a mistyped folder costs seconds and not the whole fit. Leaves nothing behind.
+void check_writable(const std::filesystem::path& path);
+
 }  // namespace sheen::core

@@ -22,7 +22,7 @@ LIBRARIES = {
     r"apriltag/|opencv2/(calib3d|videoio|aruco)": {"capture"},
     r"tiny_gltf": {"fitting"},
     r"assimp/|embree3/": {"core"},
-    r"CLI/": {"app"},
+    r"CLI/": {"app", "bench"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
