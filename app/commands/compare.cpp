@@ -4,6 +4,7 @@
 #include "app/commands/session_options.h"
 #include "app/comparison/comparison_files.h"
 #include "app/comparison/comparison_tables.h"
+#include "app/comparison/paper_comparison.h"
 #include "app/interrupt.h"
 #include "core/diagnostics/error.h"
 #include "core/files/staged_output.h"
@@ -23,6 +24,7 @@ struct CompareOptions {
   std::filesystem::path output;
   std::vector<std::string> only;  ///< names of candidates; empty: all
   SessionOptions session;         ///< `folder` is set for each of `folders` in turn
+  bool paper = false;             ///< the paper's experiments instead of sessions
 };
 
 /// Counts sessions and candidates as they are done: a session's observations are one step, each
@@ -115,6 +117,10 @@ void check_sessions(const std::vector<std::filesystem::path>& folders,
 }
 
 void run_compare(const CompareOptions& options, const CommandContext& context) {
+  if (options.paper) {
+    compare_with_paper(options.output, context);
+    return;
+  }
   check_sessions(options.folders, context);
   const core::StagedOutput staging(options.output / "comparison");
   std::filesystem::create_directory(staging.path());
@@ -147,9 +153,16 @@ void add_compare_command(CLI::App& program, CommandContext& context) {
       "SESSION/held_out where there is one, else every N-th frame. DIR receives compare.csv,\n"
       "charts (PNG, SVG) and compare.html, a page that needs no network.\n"
       "Example:\n  sheen compare sample_data/glossy -o comparison --only mean,sh3,quadtree");
-  command->add_option("sessions", options->folders, "Session folders")
-      ->required()
-      ->type_name("SESSION...");
+  CLI::Option* sessions =
+      command->add_option("sessions", options->folders, "Session folders")->type_name("SESSION...");
+  const CLI::Option* paper =
+      command
+          ->add_flag("--paper", options->paper,
+                     "Instead of sessions: the paper's own experiments, beside its figures")
+          ->excludes(sessions);
+  command->parse_complete_callback([sessions, paper] {
+    if (sessions->count() + paper->count() == 0) throw CLI::RequiredError("sessions");
+  });
   command->add_option("-o,--output", options->output, "Folder to write to")
       ->required()
       ->type_name("DIR");
