@@ -35,7 +35,7 @@ int main(int argc, char** argv) {
       "Sheen captures how an object looks from every direction: a recording of a walk round it\n"
       "becomes a surface light field that can be drawn from anywhere.");
   program.set_version_flag("--version", "sheen " SHEEN_VERSION);
-  program.require_subcommand(1);
+  program.require_subcommand(0, 1);  // none is reported below: CLI11 would not name a wrong one
   program.footer(
       "Start with the recording that comes with the source:\n"
       "  sheen replay sample_data/glossy -o model.glb --hold-out 5\n"
@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
   try {
     program.parse(argc, argv);
+    if (program.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
     return kDone;
   } catch (const CLI::ParseError& error) {
     return report_parse_error(program, error);

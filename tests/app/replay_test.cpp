@@ -27,9 +27,10 @@ struct PoseErrors {
 PoseErrors compare_poses(const std::filesystem::path& estimate,
                          const std::filesystem::path& truth) {
   PoseErrors errors;
-  const auto truth_entries = capture::read_trajectory(truth);
-  for (const auto& entry : capture::read_trajectory(estimate).entries()) {
-    for (const auto& reference : truth_entries.entries()) {
+  const capture::Trajectory estimated = capture::read_trajectory(estimate);
+  const capture::Trajectory true_poses = capture::read_trajectory(truth);
+  for (const auto& entry : estimated.entries()) {
+    for (const auto& reference : true_poses.entries()) {
       if (reference.stamp != entry.stamp) continue;
       const Eigen::Isometry3d difference =
           reference.stage_from_camera.inverse() * entry.stage_from_camera;
@@ -44,13 +45,18 @@ double psnr(const nlohmann::json& error) {
   return error.at("psnr").get<double>();
 }
 
-TEST(SampleSession, IsPosedFromItsTagsAndBeatsMeanColoursOnViewsNeverSeen) {
+class SampleSession : public testing::TestWithParam<std::string> {};
+
+INSTANTIATE_TEST_SUITE_P(Fitters, SampleSession, testing::Values("sparse", "quadtree"));
+
+TEST_P(SampleSession, IsPosedFromItsTagsAndBeatsMeanColoursOnViewsNeverSeen) {
   const TemporaryFolder folder;
   const auto model = folder.path() / "model.glb";
   const auto mean = folder.path() / "mean.glb";
   const auto poses = folder.path() / "poses.txt";
-  const ProgramRun replay = run_sheen({"replay", sample_session(), "-o", model, "--mean-out", mean,
-                                       "--poses-out", poses, "--json", "--quiet"});
+  const ProgramRun replay =
+      run_sheen({"replay", sample_session(), "-o", model, "--fitter", GetParam(), "--mean-out",
+                 mean, "--poses-out", poses, "--json", "--quiet"});
   ASSERT_EQ(replay.exit_code, 0) << replay.standard_error;
   const auto report = replay.json();
 
@@ -158,7 +164,8 @@ TEST(RealRecordings, DragonIsPosedFromItsTags) {
   const std::vector<int> good{0,  1,  2,  3,  4,  5,  6,  7,  8,  14, 27, 28, 29,
                               31, 32, 33, 35, 63, 64, 74, 76, 77, 93, 96, 98};
   int posed = 0;
-  for (const auto& entry : capture::read_trajectory(poses).entries()) {
+  const capture::Trajectory estimated = capture::read_trajectory(poses);
+  for (const auto& entry : estimated.entries()) {
     posed += static_cast<int>(std::count(good.begin(), good.end(), static_cast<int>(entry.stamp)));
   }
   EXPECT_GE(posed, 0.9 * static_cast<double>(good.size()));
