@@ -111,10 +111,10 @@
                         borderWidth: 1.5, pointRadius: 0, pointHitRadius: 0, order: 9 }];
   };
 
-  // A log axis of Chart.js offers nine ticks a decade and both its ends: keep 1, 2 and 5, or all nine
-  // where the axis is short.
+  // A log axis of Chart.js offers nine ticks a decade and both its ends: keep 1, 2 and 5, and
+  // 3 and 7 where the axis is short.
   const pick_ticks = (axis) => {
-    const leads = axis.max / axis.min < 8 ? [1, 2, 3, 4, 5, 6, 7, 8, 9] : [1, 2, 5];
+    const leads = axis.max / axis.min < 8 ? [1, 2, 3, 5, 7] : [1, 2, 5];
     axis.ticks = axis.ticks.filter(({ value }) => {
       const lead = value / 10 ** Math.floor(Math.log10(value) + 1e-9);
       return leads.some((round) => Math.abs(lead - round) < 1e-6);
