@@ -3,18 +3,24 @@
 #include "fitting/sparse/patch_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
-#include <limits>
 #include <vector>
 
 namespace sheen::fitting::sparse {
 namespace {
 
-constexpr std::array kSides{2, 4, 8};
-constexpr float kSupportInCells = 1.25f;
+// Bumps overlap widely: with supports of 1.25 cells, as near to cells as they can be, the study's
+// scene is at 37.3 dB with levels 2 to 8 and 38.6 dB with 16 added; with 3.5 cells at 41 and 44.5.
+struct Level {
+  int side;
+  float support_in_cells;
+};
+constexpr std::array<Level, 4> kLevels{{{2, 3.5f}, {4, 3.5f}, {8, 3.5f}, {16, 5.0f}}};
 
 // Cells of one level that meet the disc, row by row from (-1, -1).
-void add_level(int side, std::vector<Atom>& atoms) {
+void add_level(const Level& level, std::vector<Atom>& atoms) {
+  const int side = level.side;
   const float cell = 2.0f / static_cast<float>(side);
   for (int y = 0; y < side; ++y) {
     for (int x = 0; x < side; ++x) {
@@ -23,15 +29,15 @@ void add_level(int side, std::vector<Atom>& atoms) {
           Eigen::Vector2f::Ones();
       const Eigen::Vector2f nearest =
           (center.cwiseAbs() - Eigen::Vector2f::Constant(cell / 2)).cwiseMax(0.0f);
-      if (nearest.squaredNorm() < 1.0f) atoms.push_back({center, kSupportInCells * cell});
+      if (nearest.squaredNorm() < 1.0f) atoms.push_back({center, level.support_in_cells * cell});
     }
   }
 }
 
 std::vector<Atom> make_atoms() {
   std::vector<Atom> atoms;
-  for (const int side : kSides) add_level(side, atoms);
-  assert(atoms.size() <= std::numeric_limits<std::uint8_t>::max() + std::size_t{1});
+  for (const Level& level : kLevels) add_level(level, atoms);
+  assert(atoms.size() <= kMaxAtoms);
   return atoms;
 }
 

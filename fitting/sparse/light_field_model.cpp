@@ -50,7 +50,7 @@ PatchModel LightFieldModel::patch(std::size_t patch_idx) const {
     const Term& stored = slot.further[term - 1];
     model.coefficient[term] = as_floats(stored.colour);
     if (term >= model.base_terms) {
-      model.atom[term - model.base_terms] = static_cast<std::uint8_t>(stored.atom);
+      model.atom[term - model.base_terms] = stored.atom;
     }
   }
   return model;

@@ -4,6 +4,7 @@
 #include "fitting/sparse/light_field_model.h"
 
 #include <bitset>
+#include <cstring>
 #include <utility>
 
 namespace sheen::fitting::sparse {
@@ -15,7 +16,7 @@ constexpr std::uint8_t kLinearBit = 0x80;
 
 struct PackedArrays {
   std::vector<std::uint8_t> shapes;
-  std::vector<std::uint8_t> bumps;
+  std::vector<std::uint16_t> bumps;
   std::vector<Eigen::half> coefficients;
 };
 
@@ -49,10 +50,11 @@ PatchModel shape_from(std::byte code) {
   return patch;
 }
 
-void read_atoms(std::span<const std::byte> ids, PatchModel& patch) {
-  std::bitset<256> seen;
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const auto id = std::to_integer<std::uint8_t>(ids[i]);
+void read_atoms(std::span<const std::byte> codes, PatchModel& patch) {
+  std::bitset<kMaxAtoms> seen;
+  for (std::size_t i = 0; i < patch.bump_count; ++i) {
+    std::uint16_t id = 0;
+    std::memcpy(&id, codes.data() + 2 * i, sizeof id);
     if (id >= atoms().size()) throw ModelFault("a bump names an atom that does not exist");
     if (seen[id]) throw ModelFault("a patch has two bumps of the same atom");
     seen.set(id);
@@ -100,7 +102,7 @@ std::unique_ptr<const LightField> decode_model(const ModelPart& part,
     term_count += patch.term_count();
   }
   const auto bumps =
-      bump_count > 0 ? required_bytes(part, "bumps", bump_count) : std::span<const std::byte>();
+      bump_count > 0 ? required_bytes(part, "bumps", 2 * bump_count) : std::span<const std::byte>();
   const std::vector<Eigen::half> coefficients =
       required_halves(part, "coefficients", 3 * term_count);
   // Take the patches out one after the other.
@@ -109,7 +111,7 @@ std::unique_ptr<const LightField> decode_model(const ModelPart& part,
   std::size_t term = 0;
   for (std::size_t i = 0; i < observed.size(); ++i) {
     PatchModel patch = shape_from(shapes[i]);
-    read_atoms(bumps.subspan(bump, patch.bump_count), patch);
+    read_atoms(bumps.subspan(2 * bump, 2 * patch.bump_count), patch);
     read_coefficients(std::span(coefficients).subspan(3 * term, 3 * patch.term_count()), patch);
     model->store(i, patch);
     model->store_observed(i, observed[i] != 0);

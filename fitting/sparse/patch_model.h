@@ -17,8 +17,13 @@ struct Atom {
   float support;           ///< radius in disc units
 };
 
-/// The fixed dictionary: cells of 2x2, 4x4 and 8x8 grids over [-1, 1]^2 that meet the disc, coarse
-/// to fine, support 1.25 cells. The index is the atom's id in models and files.
+/// Ids are below this: larger ones would not be exact in the half floats of textures.
+inline constexpr std::size_t kMaxAtoms = 304;
+static_assert(kMaxAtoms <= 2048);
+
+/// The fixed dictionary: cells of 2x2, 4x4, 8x8 and 16x16 grids over [-1, 1]^2 that meet the disc,
+/// coarse to fine; support 3.5 cells, of the finest level 5. The index is the atom's id in models
+/// and files; at most kMaxAtoms.
 std::span<const Atom> atoms();
 
 /// Mean of every atom's bump over the unit disc, as if its colour were 1 (by area of the disc).
@@ -31,9 +36,9 @@ inline constexpr std::size_t kMaxBumps = 24;
 
 /// Radiance of one patch: colour(x) = base(x) + sum_k c_k theta(|x - center_k| / support_k).
 struct PatchModel {
-  std::size_t base_terms = kConstantBase;      ///< kConstantBase or kLinearBase
-  std::size_t bump_count = 0;                  ///< <= kMaxBumps
-  std::array<std::uint8_t, kMaxBumps> atom{};  ///< ids, distinct
+  std::size_t base_terms = kConstantBase;       ///< kConstantBase or kLinearBase
+  std::size_t bump_count = 0;                   ///< <= kMaxBumps
+  std::array<std::uint16_t, kMaxBumps> atom{};  ///< ids, distinct
   /// Base terms first, then one per bump; RGB, display-referred sRGB.
   std::array<Eigen::Vector3f, kLinearBase + kMaxBumps> coefficient{};
 

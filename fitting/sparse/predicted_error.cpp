@@ -51,7 +51,9 @@ float predicted_error(const PatchModel& model, std::span<const DirectedColour> s
   const auto design = std::make_unique<Design>();
   const auto fit = std::make_unique<StepwiseFit>();
   design->load(samples);
-  fit->build(*design, TermList::of(model));
+  const TermList terms = TermList::of(model);
+  design->evaluate(terms);
+  fit->build(*design, terms);
   float squared_residual = 0;
   for (std::size_t k = 0; k < near; ++k) {
     const DirectedColour& sample = samples[order[k]];

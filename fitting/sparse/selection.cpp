@@ -6,12 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace sheen::fitting::sparse {
 namespace {
 
 /// Weight of samples at which the economy reaches half its nominal value.
 constexpr float kEconomyOnset = 48.0f;
+/// Numbers that naming an atom counts as. One of 304 is log 304 = 5.7 nats, a number 1/2 log n
+/// = 2.2: at the price of one number, noise finds an atom that suits it too often.
+constexpr std::size_t kPriceOfAtom = 3;
 /// Part of the samples' weight that a model may use up as degrees of freedom.
 constexpr float kMostFreedom = 0.7f;
 /// Samples below which a patch is one colour.
@@ -31,43 +35,52 @@ constexpr float kBrightestGuess = 1.5f;
 /// of it, and s its product with the residual, adding it lowers the penalised error by |s|^2 / d.
 /// Both follow each new direction without a pass over the earlier ones.
 struct Selection::Candidates {
-  Eigen::Array<float, static_cast<int>(kMaxAtoms), 1> remainder;
-  Eigen::Matrix<float, static_cast<int>(kMaxAtoms), 3> correlation;
-  Eigen::Index count = 0;
+  struct Candidate {
+    FunctionIdx idx;
+    float remainder;
+    Eigen::RowVector3f correlation;
+  };
+  std::array<Candidate, kMaxAtoms> all;
+  std::size_t count = 0;
 
-  void start(const Design& design) {
-    const auto columns = design.atom_columns();
-    count = columns.cols();
-    correlation.topRows(count).noalias() = columns.transpose() * design.colours();
-    remainder.head(count) = columns.colwise().squaredNorm().transpose();
+  void start(Design& design) {
     // Atoms that no sample touches must not divide by their ridge alone.
     constexpr float hardly_touched = 0.02f;
-    for (Eigen::Index i = 0; i < count; ++i) {
-      remainder[i] = remainder[i] < hardly_touched
-                         ? std::numeric_limits<float>::infinity()
-                         : remainder[i] + design.ridge(kLinearBase + static_cast<FunctionIdx>(i));
+    design.evaluate_all();
+    count = 0;
+    for (FunctionIdx idx = kLinearBase; idx < kLinearBase + atoms().size(); ++idx) {
+      const auto column = design.column(idx);
+      const float squared = column.squaredNorm();
+      if (squared < hardly_touched) continue;
+      all[count++] = {idx, squared + design.ridge(idx), column.transpose() * design.colours()};
     }
   }
   void follow(const Design& design, const StepwiseFit& fit) {
-    Eigen::Matrix<float, static_cast<int>(kMaxAtoms), 1> shared;
-    shared.head(count).noalias() = design.atom_columns().transpose() * fit.last_direction();
-    remainder.head(count) -= shared.head(count).array().square();
-    correlation.topRows(count).noalias() -= shared.head(count) * fit.last_projection();
+    const Eigen::RowVector3f projection = fit.last_projection();
+    const auto direction = fit.last_direction();
+    for (Candidate& candidate : std::span(all.data(), count)) {
+      const float shared = design.column(candidate.idx).dot(direction);
+      candidate.remainder -= shared * shared;
+      candidate.correlation -= shared * projection;
+    }
   }
-  void remove(Eigen::Index atom) { remainder[atom] = std::numeric_limits<float>::infinity(); }
-  [[nodiscard]] std::optional<Eigen::Index> best() const {
+  /// Takes out the best; nothing when none is left that differs from what is there.
+  [[nodiscard]] std::optional<FunctionIdx> take_best() {
     constexpr float smallest_remainder = 1e-4f;
-    std::optional<Eigen::Index> best;
+    std::size_t best = count;
     float largest = 0;
-    for (Eigen::Index i = 0; i < count; ++i) {
-      if (!(remainder[i] > smallest_remainder)) continue;
-      const float gain = correlation.row(i).squaredNorm() / remainder[i];
+    for (std::size_t i = 0; i < count; ++i) {
+      if (!(all[i].remainder > smallest_remainder)) continue;
+      const float gain = all[i].correlation.squaredNorm() / all[i].remainder;
       if (gain > largest) {
         largest = gain;
         best = i;
       }
     }
-    return best;
+    if (best == count) return std::nullopt;
+    const FunctionIdx idx = all[best].idx;
+    all[best] = all[--count];
+    return idx;
   }
 };
 
@@ -85,7 +98,7 @@ float Selection::score(const StepwiseFit& fit) const {
     return std::numeric_limits<float>::infinity();
   }
   const float economy = options_.economy * n / (n + kEconomyOnset);
-  const auto numbers = static_cast<float>(3 * terms.count + terms.bump_count());
+  const auto numbers = static_cast<float>(3 * terms.count + kPriceOfAtom * terms.bump_count());
   return 1.5f * n * std::log(generalised_error(fit) + options_.tolerance * options_.tolerance) +
          0.5f * economy * numbers * std::log(std::max(2.0f, n));
 }
@@ -103,10 +116,9 @@ Selection::Scored Selection::grown(std::size_t base_terms) {
   Scored best{fit_.terms(), score(fit_)};
   int in_vain = 0;
   while (in_vain <= kPatience && fit_.terms().bump_count() < kMaxBumps) {
-    const auto atom = candidates.best();
-    if (!atom) break;
-    candidates.remove(*atom);
-    if (!fit_.push(design_, kLinearBase + static_cast<FunctionIdx>(*atom))) continue;
+    const auto bump = candidates.take_best();
+    if (!bump) break;
+    if (!fit_.push(design_, *bump)) continue;
     candidates.follow(design_, fit_);
     ++fits_;
     const float reached = score(fit_);
@@ -153,14 +165,15 @@ bool Selection::discount_suspects(std::span<const DirectedColour> samples) {
   std::array<float, kMaxStoredSamples> surprise;
   bool changed = false;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Eigen::Vector3f residual =
-        fit_.residuals().row(static_cast<Eigen::Index>(i)) / design_.root_weight(i);
+    const auto row = static_cast<Eigen::Index>(i);
+    const Eigen::Vector3f residual = fit_.residuals().row(row) / design_.root_weight(i);
+    const Eigen::Vector3f asked = design_.colours().row(row) / design_.root_weight(i);
     const float left = std::max(0.05f, 1.0f - fit_.leverage(i));
     surprise[i] = residual.norm() / left;
     // A saturated channel only says "at least this much".
     Eigen::Vector3f wanted = samples[i].rgb;
     for (int channel = 0; channel < 3; ++channel) {
-      const float fitted = samples[i].rgb[channel] - residual[channel];
+      const float fitted = asked[channel] - residual[channel];
       if (wanted[channel] < kSaturated || fitted <= wanted[channel]) continue;
       wanted[channel] = std::min(fitted, kBrightestGuess);
     }
@@ -169,9 +182,22 @@ bool Selection::discount_suspects(std::span<const DirectedColour> samples) {
     changed = true;
   }
   const std::span<float> factors(surprise.data(), samples.size());
-  if (!robust_factors(factors, options_.tolerance)) return changed;
-  design_.reweigh(factors);
-  return true;
+  return set_factors(factors) || changed;
+}
+
+// Factors replace those of an earlier pass, so that a highlight that was mistaken for an outlier
+// can come back.
+bool Selection::set_factors(std::span<float> factors) {
+  constexpr float noticeable = 0.01f;
+  robust_factors(factors, options_.tolerance);
+  bool changed = false;
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    const float before = std::exchange(factor_[i], factors[i]);
+    changed |= std::abs(factor_[i] - before) > noticeable;
+    factors[i] = factor_[i] / before;
+  }
+  if (changed) design_.reweigh(factors);
+  return changed;
 }
 
 SelectedModel Selection::outcome(const TermList& terms) {
@@ -182,12 +208,18 @@ SelectedModel Selection::outcome(const TermList& terms) {
 }
 
 SelectedModel Selection::choose(std::span<const DirectedColour> samples) {
+  // Twice: the first pass judges by a fit that follows the outliers, the second by one that does
+  // not.
+  constexpr int passes = 2;
   fits_ = 0;
   design_.load(samples);
+  factor_.fill(1.0f);
   TermList terms = best_terms();
-  if (design_.rows() >= kFewestSamples) {
+  if (design_.rows() < kFewestSamples) return outcome(terms);
+  for (int pass = 0; pass < passes; ++pass) {
     fit_.build(design_, terms);
-    if (discount_suspects(samples)) terms = best_terms();
+    if (!discount_suspects(samples)) break;
+    terms = best_terms();
   }
   return outcome(terms);
 }
@@ -204,7 +236,8 @@ std::optional<TermList> Selection::with_best_bump(const TermList& terms,
     if ((seen_at - a.center).squaredNorm() >= a.support * a.support) continue;
     const FunctionIdx idx = kLinearBase + atom;
     const auto* end = terms.function.data() + terms.count;
-    if (std::find(terms.function.data(), end, static_cast<std::uint8_t>(idx)) != end) continue;
+    if (std::find(terms.function.data(), end, static_cast<std::uint16_t>(idx)) != end) continue;
+    design_.evaluate(idx);
     const auto column = design_.column(idx);
     const float gain = (column.transpose() * residuals).squaredNorm() /
                        (column.squaredNorm() + design_.ridge(idx));
@@ -224,6 +257,7 @@ SelectedModel Selection::step(std::span<const DirectedColour> samples, const Pat
   fits_ = 0;
   design_.load(samples);
   Scored best{TermList::of(model), std::numeric_limits<float>::infinity()};
+  design_.evaluate(best.terms);
   if (design_.rows() < kFewestSamples) return outcome(TermList::base(kConstantBase));
   try_terms(best.terms, best);
   // Upgrade the base.

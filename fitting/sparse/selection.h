@@ -26,15 +26,16 @@ struct SelectedModel {
 ///
 ///     score = 3/2 n log(GCV + tolerance^2) + economy(n) / 2 * numbers * log n,
 ///
-/// with GCV = mean r^2 / (1 - df / n)^2 and n the weight of the samples. The economy grows with n
-/// to its nominal value: with a dozen samples a term that is wrong costs little and one that is
-/// missing much. Holds the workspace (about 65 KB): one per thread.
+/// with GCV = mean r^2 / (1 - df / n)^2, n the weight of the samples, and three numbers for a term
+/// and three more for the choice of its atom. The economy grows with n to its nominal value: with a
+/// dozen samples a term that is wrong costs little and one that is missing much. Holds the
+/// workspace (about 180 KB): one per thread.
 class Selection {
  public:
   explicit Selection(const Options& options) : options_(options) {}
 
-  /// From nothing: forward from both bases, backward, then once more with outliers weighed down
-  /// (by their leave-one-out residuals) and saturated samples censored. Depends on
+  /// From nothing: forward from both bases, backward, then up to twice more with outliers weighed
+  /// down (by their leave-one-out residuals) and saturated samples censored. Depends on
   /// the samples only. 1 to kMaxStoredSamples samples.
   SelectedModel choose(std::span<const DirectedColour> samples);
 
@@ -56,6 +57,7 @@ class Selection {
   [[nodiscard]] Scored pruned(Scored start);
   [[nodiscard]] TermList best_terms();
   [[nodiscard]] bool discount_suspects(std::span<const DirectedColour> samples);
+  [[nodiscard]] bool set_factors(std::span<float> factors);
   [[nodiscard]] std::optional<TermList> with_best_bump(const TermList& terms,
                                                        const Eigen::Vector2f& seen_at);
   void try_terms(const TermList& terms, Scored& best);
@@ -64,6 +66,7 @@ class Selection {
   Options options_;
   Design design_;
   StepwiseFit fit_;
+  std::array<float, kMaxStoredSamples> factor_{};  ///< what weights are multiplied by
   std::size_t fits_ = 0;
 };
 

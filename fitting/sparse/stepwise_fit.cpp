@@ -20,8 +20,8 @@ constexpr float kReach = 0.1f;
 struct Ridge {
   float slope = 0.02f;
   float slope_growth = 0.01f;  ///< per unit of weight
-  float bump = 0.1f;
-  float bump_growth = 0.02f;  ///< per unit of weight under the bump
+  float bump = 0.03f;
+  float bump_growth = 0.01f;  ///< per unit of weight under the bump
   float onset = 96.0f;        ///< weight at which half of the growth is reached
 };
 constexpr Ridge kRidge;
@@ -62,17 +62,20 @@ void Design::weigh(std::span<const DirectedColour> samples) {
   root_weight_.head(rows_) = root_weight_.head(rows_).cwiseSqrt().cwiseInverse();
 }
 
+void Design::set_ridge(FunctionIdx idx) {
+  const float growth = total_weight_ / (total_weight_ + kRidge.onset);
+  if (idx < kLinearBase) {
+    ridge_[idx] = idx == 0 ? 0.0f : kRidge.slope + kRidge.slope_growth * growth * total_weight_;
+  } else {
+    const float covered = column(idx).dot(root_weight_.head(rows_));
+    ridge_[idx] = kRidge.bump + kRidge.bump_growth * growth * covered;
+  }
+}
+
 void Design::set_ridge() {
   total_weight_ = root_weight_.head(rows_).squaredNorm();
-  const float growth = total_weight_ / (total_weight_ + kRidge.onset);
-  ridge_[0] = 0.0f;
-  for (FunctionIdx idx = 1; idx < kLinearBase; ++idx) {
-    ridge_[idx] = kRidge.slope + kRidge.slope_growth * growth * total_weight_;
-  }
-  const auto root_weight = root_weight_.head(rows_);
-  for (std::size_t atom = 0; atom < atoms().size(); ++atom) {
-    const float covered = column(kLinearBase + atom).dot(root_weight);
-    ridge_[kLinearBase + atom] = kRidge.bump + kRidge.bump_growth * growth * covered;
+  for (FunctionIdx idx = 0; idx < kLinearBase + atoms().size(); ++idx) {
+    if (evaluated_[idx]) set_ridge(idx);
   }
 }
 
@@ -80,28 +83,42 @@ void Design::load(std::span<const DirectedColour> samples) {
   assert(!samples.empty() && samples.size() <= kMaxStoredSamples && atoms().size() <= kMaxAtoms);
   rows_ = static_cast<Eigen::Index>(samples.size());
   weigh(samples);
-  // Evaluate every function at every sample.
+  // Evaluate the base at every sample.
   for (Eigen::Index row = 0; row < rows_; ++row) {
     const DirectedColour& sample = samples[static_cast<std::size_t>(row)];
     const float weight = root_weight_[row];
+    positions_.row(row) = sample.uv.transpose().array();
     colours_.row(row) = weight * sample.rgb.transpose();
     const float z = std::sqrt(std::max(0.0f, 1.0f - sample.uv.squaredNorm()));
     functions_.row(row).head<4>() =
         weight * Eigen::RowVector4f(1.0f, sample.uv.x(), sample.uv.y(), z);
   }
-  for (std::size_t atom = 0; atom < atoms().size(); ++atom) {
-    const Atom& a = atoms()[atom];
-    const auto column_idx = static_cast<Eigen::Index>(kLinearBase + atom);
-    const float squared_support = a.support * a.support;
-    for (Eigen::Index row = 0; row < rows_; ++row) {
-      const float squared = (samples[static_cast<std::size_t>(row)].uv - a.center).squaredNorm();
-      functions_(row, column_idx) =
-          squared < squared_support
-              ? root_weight_[row] * iwls::wendland(std::sqrt(squared) / a.support)
-              : 0.0f;
-    }
-  }
+  evaluated_.reset();
+  for (FunctionIdx idx = 0; idx < kLinearBase; ++idx) evaluated_.set(idx);
   set_ridge();
+}
+
+void Design::evaluate(FunctionIdx idx) {
+  if (evaluated_[idx]) return;
+  evaluated_.set(idx);
+  const Atom& atom = atoms()[idx - kLinearBase];
+  // Wendland's function without a branch, so that it runs over several samples at a time.
+  const float scale = 1.0f / (atom.support * atom.support);
+  const auto u = positions_.col(0).head(rows_) - atom.center.x();
+  const auto v = positions_.col(1).head(rows_) - atom.center.y();
+  auto column = functions_.col(static_cast<Eigen::Index>(idx)).head(rows_).array();
+  column = (scale * (u.square() + v.square())).min(1.0f).sqrt();
+  column =
+      root_weight_.head(rows_).array() * (1.0f - column).square().square() * (4.0f * column + 1.0f);
+  set_ridge(idx);
+}
+
+void Design::evaluate(const TermList& terms) {
+  for (std::size_t i = 0; i < terms.count; ++i) evaluate(terms.function[i]);
+}
+
+void Design::evaluate_all() {
+  for (FunctionIdx idx = kLinearBase; idx < kLinearBase + atoms().size(); ++idx) evaluate(idx);
 }
 
 void Design::reweigh(std::span<const float> factor) {
@@ -195,7 +212,7 @@ PatchModel StepwiseFit::model(std::size_t count) const {
     model.coefficient[i] = c.row(static_cast<Eigen::Index>(i));
     if (i >= model.base_terms) {
       model.atom[i - model.base_terms] =
-          static_cast<std::uint8_t>(terms_.function[i] - kLinearBase);
+          static_cast<std::uint16_t>(terms_.function[i] - kLinearBase);
     }
   }
   return model;

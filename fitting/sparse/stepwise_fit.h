@@ -7,6 +7,8 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <bitset>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -14,7 +16,6 @@
 namespace sheen::fitting::sparse {
 
 inline constexpr std::size_t kMaxTerms = kLinearBase + kMaxBumps;
-inline constexpr std::size_t kMaxAtoms = 80;
 
 /// Number of a function: 0 constant, 1 to 3 the direction's x, y, z, from 4 on the atoms.
 using FunctionIdx = std::size_t;
@@ -22,10 +23,10 @@ inline constexpr std::size_t kMaxFunctions = kLinearBase + kMaxAtoms;
 
 /// Functions of a patch in the order in which they were chosen; those of the base come first.
 struct TermList {
-  std::array<std::uint8_t, kMaxTerms> function{};
+  std::array<std::uint16_t, kMaxTerms> function{};
   std::size_t count = 0;
 
-  void push(FunctionIdx idx) { function[count++] = static_cast<std::uint8_t>(idx); }
+  void push(FunctionIdx idx) { function[count++] = static_cast<std::uint16_t>(idx); }
   void erase(std::size_t position);
   [[nodiscard]] std::size_t base_terms() const {
     return count > 1 && function[1] == 1 ? kLinearBase : kConstantBase;
@@ -38,12 +39,18 @@ struct TermList {
 };
 
 /// Samples of one patch as a weighted least-squares problem over all functions. Rows are scaled by
-/// the square roots of the weights. Large: keep one per thread.
+/// the square roots of the weights. Atoms are evaluated where they are asked for: most fits need a
+/// few of them. Large: keep one per thread.
 class Design {
  public:
   /// Takes 1 to kMaxStoredSamples samples. Each weighs one over the number of samples within its
   /// reach, itself included: a camera that dwells says no more than one that passes.
   void load(std::span<const DirectedColour> samples);
+
+  /// Makes functions ready for use.
+  void evaluate(FunctionIdx idx);
+  void evaluate(const TermList& terms);
+  void evaluate_all();
 
   /// Multiplies the weight of every sample, in (0, 1].
   void reweigh(std::span<const float> factor);
@@ -56,10 +63,8 @@ class Design {
   /// Pull of a function's coefficient towards zero, in units of squared function values.
   [[nodiscard]] float ridge(FunctionIdx idx) const { return ridge_[idx]; }
   [[nodiscard]] auto column(FunctionIdx idx) const {
+    assert(evaluated_[idx]);
     return functions_.col(static_cast<Eigen::Index>(idx)).head(rows_);
-  }
-  [[nodiscard]] auto atom_columns() const {
-    return functions_.block(0, kLinearBase, rows_, static_cast<Eigen::Index>(atoms().size()));
   }
   [[nodiscard]] auto colours() const { return colours_.topRows(rows_); }
   [[nodiscard]] float root_weight(std::size_t sample_idx) const {
@@ -69,11 +74,15 @@ class Design {
  private:
   void weigh(std::span<const DirectedColour> samples);
   void set_ridge();
+  void set_ridge(FunctionIdx idx);
 
   static constexpr int kRows = static_cast<int>(kMaxStoredSamples);
   Eigen::Index rows_ = 0;
   float total_weight_ = 0;
-  Eigen::Matrix<float, kRows, static_cast<int>(kMaxFunctions)> functions_;
+  // On the heap: 160 KB are more than Eigen lets lie in an object.
+  Eigen::MatrixXf functions_ = Eigen::MatrixXf::Zero(kRows, static_cast<int>(kMaxFunctions));
+  std::bitset<kMaxFunctions> evaluated_;
+  Eigen::Array<float, kRows, 2> positions_;
   Eigen::Matrix<float, kRows, 3> colours_;
   Eigen::Matrix<float, kRows, 1> root_weight_;
   std::array<float, kMaxFunctions> ridge_{};

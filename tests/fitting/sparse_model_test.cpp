@@ -49,28 +49,34 @@ bool same(const PatchModel& a, const PatchModel& b) {
                     b.coefficient.begin());
 }
 
-// Cells of width 1, 1/2 and 1/4 that meet the unit disc: of the 8x8 grid only the four corner cells
-// do not, their nearest corner being (3/4, 3/4). 4 + 16 + 60.
+// Cells of width 1, 1/2, 1/4 and 1/8 that meet the unit disc. Of the 8x8 grid only the four corner
+// cells do not, their nearest corner being (3/4, 3/4). Of the 16x16 grid, in units of 1/8 from the
+// middle, a cell with nearest corner (x, y) is outside when x^2 + y^2 >= 64: (7, 4), (7, 5), (7,
+// 6), (7, 7), (6, 6), and the three first mirrored, in each quadrant: 32. 4 + 16 + 60 + 224 = 304.
 TEST(SparseAtoms, AreTheQuadtreesCells) {
-  ASSERT_EQ(atoms().size(), 80u);
+  ASSERT_EQ(atoms().size(), 304u);
+  ASSERT_EQ(atoms().size(), kMaxAtoms);
   EXPECT_EQ(atoms()[0].center, Eigen::Vector2f(-0.5f, -0.5f));
-  EXPECT_EQ(atoms()[0].support, 1.25f);
+  EXPECT_EQ(atoms()[0].support, 3.5f);
   EXPECT_EQ(atoms()[4].center, Eigen::Vector2f(-0.75f, -0.75f));
-  EXPECT_EQ(atoms()[4].support, 0.625f);
+  EXPECT_EQ(atoms()[4].support, 1.75f);
   EXPECT_EQ(atoms()[20].center, Eigen::Vector2f(-0.625f, -0.875f));
   EXPECT_EQ(atoms()[79].center, Eigen::Vector2f(0.625f, 0.875f));
-  EXPECT_EQ(atoms()[79].support, 0.3125f);
+  EXPECT_EQ(atoms()[79].support, 0.875f);
+  EXPECT_EQ(atoms()[303].center, Eigen::Vector2f(0.4375f, 0.9375f));
+  EXPECT_EQ(atoms()[303].support, 0.625f);
   std::set<std::array<float, 3>> distinct;
   for (const Atom& atom : atoms()) {
     distinct.insert({atom.center.x(), atom.center.y(), atom.support});
   }
-  EXPECT_EQ(distinct.size(), 80u);
+  EXPECT_EQ(distinct.size(), 304u);
 }
 
 // An atom inside the disc: over the plane its bump has the integral
 // 2 pi h^2 int_0^1 (1-d)^4 (4d+1) d dd = 2 pi h^2 (4 B(3,5) + B(2,5)) = 2 pi h^2 (4/105 + 1/30)
-// = pi h^2 / 7, and the disc has the area pi: the mean is h^2 / 7. Atoms of the finest level at
-// (+-1/8, +-1/8), h = 5/16, lie inside.
+// = pi h^2 / 7, and the disc has the area pi: the mean is h^2 / 7. Atoms of the finest level,
+// h = 5/8, lie inside when their centre is within 3/8 of the middle: in units of 1/16 (1, 1), (1,
+// 3), (1, 5), (3, 1), (3, 3), (3, 5), (5, 1), (5, 3) in each quadrant, 32.
 TEST(SparseAtoms, MeanIsTheIntegral) {
   int inside = 0;
   for (std::size_t i = 0; i < atoms().size(); ++i) {
@@ -79,7 +85,7 @@ TEST(SparseAtoms, MeanIsTheIntegral) {
     ++inside;
     EXPECT_NEAR(atom_means()[i], atom.support * atom.support / 7, 2e-5f) << i;
   }
-  EXPECT_GE(inside, 16);
+  EXPECT_GE(inside, 32);
 }
 
 // The mean against a sum over rings of equal area, and the linear base's 2/3.
@@ -271,8 +277,8 @@ TEST_F(SparseCodec, HasThreeArraysOfTheRightSize) {
   ASSERT_EQ(arrays_.size(), 3u);
   EXPECT_EQ(arrays_["shapes"].size(), kPatches);
   EXPECT_EQ(arrays_["coefficients"].size(), 6 * terms);
-  // Every number of the model is there once: halves, and a byte for each bump.
-  EXPECT_EQ(arrays_["coefficients"].size() / 2 + arrays_["bumps"].size(),
+  // Every number of the model is there once, in two bytes.
+  EXPECT_EQ(arrays_["coefficients"].size() / 2 + arrays_["bumps"].size() / 2,
             model_.coefficient_count());
 }
 
@@ -325,15 +331,27 @@ TEST(SparseCodecLimits, BrokenPatchesAreRefused) {
                    parameters, 1)
         .has_value();
   };
+  const auto ids = [](std::initializer_list<unsigned> list) {
+    std::string bytes;
+    for (const unsigned id : list) {
+      bytes += static_cast<char>(id & 0xff);
+      bytes += static_cast<char>(id >> 8);
+    }
+    return bytes;
+  };
   // Two bumps on a constant: 3 terms of 6 bytes.
-  EXPECT_TRUE(accepted("\x02", "\x05\x06", 18));
-  EXPECT_FALSE(accepted("\x02", "\x05\x05", 18));  // the same atom twice
-  EXPECT_FALSE(accepted("\x02", "\x05\x50", 18));  // atom 80
+  EXPECT_TRUE(accepted("\x02", ids({5, 6}), 18));
+  EXPECT_TRUE(accepted("\x02", ids({44, 300}), 18));  // 300 mod 256 is 44: two atoms all the same
+  EXPECT_TRUE(accepted("\x02", ids({5, 303}), 18));
+  EXPECT_FALSE(accepted("\x02", ids({300, 300}), 18));  // the same atom twice
+  EXPECT_FALSE(accepted("\x02", ids({5, 304}), 18));    // there is no atom 304
+  EXPECT_FALSE(accepted("\x02", ids({5, 0xffff}), 18));
+  EXPECT_FALSE(accepted("\x02", "\x05\x06", 18));  // one byte each, as before
   // 24 bumps are allowed, 25 are not.
-  std::string ids;
-  for (char id = 0; id < 25; ++id) ids += id;
-  EXPECT_TRUE(accepted("\x18", ids.substr(0, 24), 25 * 6));
-  EXPECT_FALSE(accepted("\x19", ids, 26 * 6));
+  std::string many;
+  for (unsigned id = 0; id < 25; ++id) many += ids({10 * id});
+  EXPECT_TRUE(accepted("\x18", many.substr(0, 48), 25 * 6));
+  EXPECT_FALSE(accepted("\x19", many, 26 * 6));
 }
 
 TEST_F(SparseCodec, ForeignDictionariesAreRefused) {

@@ -16,8 +16,8 @@ inline sparse::PatchModel random_patch(std::mt19937& random, std::size_t most_bu
   const auto between = [&](float low, float high) {
     return low + (high - low) * static_cast<float>(random()) / 4294967296.0f;
   };
-  std::vector<std::uint8_t> ids(sparse::atoms().size());
-  std::iota(ids.begin(), ids.end(), std::uint8_t{0});
+  std::vector<std::uint16_t> ids(sparse::atoms().size());
+  std::iota(ids.begin(), ids.end(), std::uint16_t{0});
   std::shuffle(ids.begin(), ids.end(), random);
   sparse::PatchModel patch;
   patch.base_terms = random() % 2 == 0 ? sparse::kConstantBase : sparse::kLinearBase;

@@ -65,7 +65,7 @@ TEST(SparsePatchShader, SendsWhatTheLargestPatchNeeds) {
   EXPECT_EQ(shader->upload(two), 2u * 8u * 8u);
   // The largest patch there is.
   patch.bump_count = kMaxBumps;
-  for (std::size_t i = 0; i < kMaxBumps; ++i) patch.atom[i] = static_cast<std::uint8_t>(3 * i);
+  for (std::size_t i = 0; i < kMaxBumps; ++i) patch.atom[i] = static_cast<std::uint16_t>(3 * i);
   model.store(3, patch);
   EXPECT_EQ(shader->upload(two), 10u * 28u * 8u);
   EXPECT_EQ(shader->upload({}), 0u);
