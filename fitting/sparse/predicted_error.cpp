@@ -73,7 +73,7 @@ float predicted_error(const PatchModel& model, std::span<const DirectedColour> s
   }
   const Eigen::Vector3f shown = evaluate(model, uv).cwiseMax(0.0f).cwiseMin(1.0f);
   return std::sqrt(squared_residual / static_cast<float>(near)) +
-         2.0f * distance[order[0]] * spread_of(samples) + 0.5f * size_of(shown - blend / total);
+         distance[order[0]] * spread_of(samples) + 0.5f * size_of(shown - blend / total);
 }
 
 }  // namespace sheen::fitting::sparse
