@@ -23,7 +23,7 @@ namespace {
 constexpr std::size_t kMaxBytes = 16 * 1024;
 constexpr auto kMaxBrackets = 64;
 constexpr int kMaxSidePx = 1 << 15;
-constexpr const char* kRemedy = "calibrate again with `sheen calibrate`";
+constexpr const char* kRemedy = "see docs/session-format.md for camera.yaml";
 
 class CameraReader {
  public:

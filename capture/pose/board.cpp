@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
 constexpr double kMaxExtentM = 1e3;
-constexpr const char* kRemedy = "see docs/formats.md for the two layouts of board.yaml";
+constexpr const char* kRemedy = "see docs/session-format.md for the two layouts of board.yaml";
 
 /// board.yaml with errors that name the file.
 class BoardReader {
@@ -139,7 +139,8 @@ Board read_aprilgrid(const BoardReader& reader) {
   const double spacing = reader.number(reader.root(), "tagSpacing");
   if (!(spacing >= 0)) reader.fail("tagSpacing is negative");
   const int first_id = reader.whole_number(reader.root(), "startId", 0, 0);
-  if (columns > codes || rows > codes || first_id > codes || columns * rows + first_id > codes) {
+  // In this form nothing overflows, whatever the file says.
+  if (first_id > codes || columns > codes || rows > (codes - first_id) / columns) {
     reader.fail("the grid has more tags than the family " + board.family + " has codes");
   }
   const double pitch_m = size_m * (1 + spacing);

@@ -26,7 +26,7 @@ struct Board {
   std::map<int, Tag> tags;  ///< by id
 };
 
-/// board.yaml: AprilTag bundle or Kalibr aprilgrid (docs/formats.md, "board"). Throws core::Error
+/// board.yaml: AprilTag bundle or Kalibr aprilgrid (docs/session-format.md). Throws core::Error
 /// (bad_input): unknown family, duplicate ids, sizes that are not positive, nothing usable.
 Board read_board(const std::filesystem::path& path);
 

@@ -60,6 +60,7 @@ class TagDetector::Aruco : public Implementation {
  public:
   explicit Aruco(const TagFamily& family)
       : half_turn_(family.half_turn),
+        modules_(family.modules),
         codes_(cv::aruco::getPredefinedDictionary(family.aruco_dictionary_id)),
         parameters_(cv::aruco::DetectorParameters::create()) {
     parameters_->markerBorderBits = (family.modules - codes_->markerSize) / 2;

@@ -19,7 +19,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
-constexpr const char* kRemedy = "see docs/formats.md for session.json";
+constexpr const char* kRemedy = "see docs/session-format.md";
 
 /// session.json with errors that name the file and warnings for what is not understood.
 class SessionReader {

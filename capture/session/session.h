@@ -14,7 +14,7 @@
 
 namespace sheen::capture {
 
-/// A session folder (docs/formats.md, "session"): what session.json says, checked.
+/// A session folder (docs/session-format.md): what session.json says, checked.
 struct Session {
   std::filesystem::path folder;
   /// Exactly one of the two is set: a video file, or a printf pattern such as images/%04d.png.

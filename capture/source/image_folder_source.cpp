@@ -62,7 +62,7 @@ class ImageFolderSource : public FrameSource {
     }
     first_ = *numbers.begin();
     count_ = static_cast<int>(numbers.size());
-    if (*numbers.rbegin() - first_ + 1 == count_) return;
+    if (*numbers.rbegin() - first_ == count_ - 1) return;
     int missing = first_;
     while (numbers.contains(missing)) ++missing;
     throw core::bad_input(session_folder_ / name_.at(missing), "this picture is missing",
@@ -140,8 +140,9 @@ std::optional<int> NumberedName::number_in(const std::string& file_name) const {
   int number = 0;
   const auto [stop, status] = std::from_chars(begin, end, number);
   // Writing it again tells a name of this form from 7.png among 0007.png.
-  if (status != std::errc() || stop != end || at(number) != folder_ + file_name)
+  if (status != std::errc() || stop != end || number < 0 || at(number) != folder_ + file_name) {
     return std::nullopt;
+  }
   return number;
 }
 

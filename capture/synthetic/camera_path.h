@@ -34,7 +34,7 @@ class CameraPath {
   /// Sum of three sines of slow, unrelated frequencies in [-1, 1].
   [[nodiscard]] double wave(int channel, double t) const;
 
-  static constexpr int kChannels = 8;
+  static constexpr int kChannels = 7;
   Options options_;
   Eigen::Vector3d centre_in_stage_;
   double radius_m_;

@@ -42,7 +42,7 @@ Scene make_scene(const SyntheticOptions& options);
 /// Called after every picture; an exception it throws ends the work and leaves nothing behind.
 using Progress = std::function<void(int done, int total)>;
 
-/// Writes a session folder (docs/formats.md) with frames.avi, board.yaml, truth_poses.txt and, for
+/// Writes a session folder (docs/session-format.md) with frames.avi, board.yaml, truth_poses.txt and, for
 /// `held_out` > 0, the session held_out/ of noise-free PNG views with their exact poses. The same
 /// options give the same bytes whatever `threads` is.
 /// Throws core::Error when the place cannot be written.

@@ -151,6 +151,10 @@ TEST(BoardFile, RefusesEachFault) {
   refuse(grid + "tagCols: 6\n", "tagRows");
   refuse(grid + "tagCols: 60\ntagRows: 60\n", "more tags");
   refuse(grid + "tagCols: 2000000000\ntagRows: 2000000000\n", "more tags");
+  // Either number is below the 48714 codes of this family, their product above what an int holds.
+  refuse(
+      "tag_family: tagStandard52h13\nborder_bits: 1\n" + grid + "tagCols: 48000\ntagRows: 48000\n",
+      "more tags");
   refuse(grid + "tagCols: 0\ntagRows: 6\n", "tagCols");
 }
 
