@@ -5,11 +5,14 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace sheen::core {
 namespace {
@@ -59,6 +62,98 @@ bool states_sizes(const json& document, const char* list, const char* key, std::
   return true;
 }
 
+/// What stands under `key`, an empty array where nothing does. By reference: copies of JSON
+/// recurse, and a file may nest it a million times.
+const json& member(const json& object, const char* key) {
+  static const json none = json::array();
+  const auto found = object.find(key);
+  return found == object.end() ? none : *found;
+}
+
+/// Distinct indices below `end` under `key` of `object`; none where it is absent. No value for
+/// anything else.
+std::optional<std::vector<std::size_t>> distinct_indices(const json& object, const char* key,
+                                                         std::size_t end) {
+  const json& list = member(object, key);
+  if (!object.is_object() || !list.is_array()) return std::nullopt;
+  std::vector<std::size_t> indices;
+  for (const json& entry : list) {
+    if (!entry.is_number_unsigned() || entry.get<std::uint64_t>() >= end) return std::nullopt;
+    indices.push_back(entry.get<std::size_t>());
+  }
+  std::vector<std::size_t> sorted = indices;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) return std::nullopt;
+  return indices;
+}
+
+/// Whether no node has two parents or lies deeper than a sane file nests them. assimp walks nodes
+/// by recursion and once for every way that leads to them.
+bool nodes_are_trees(const json& document) {
+  constexpr int deepest = 256;
+  const json& nodes = member(document, "nodes");
+  if (!nodes.is_array()) return false;
+  std::vector<std::vector<std::size_t>> children;
+  std::vector<std::uint8_t> has_parent(nodes.size(), 0);
+  for (const json& node : nodes) {
+    const auto below = distinct_indices(node, "children", nodes.size());
+    if (!below) return false;
+    for (const std::size_t child : *below) {
+      if (has_parent[child] != 0) return false;
+      has_parent[child] = 1;
+    }
+    children.push_back(*below);
+  }
+
+  // Walk down level by level; what is never reached lies on a cycle.
+  std::vector<std::size_t> level;
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    if (has_parent[i] == 0) level.push_back(i);
+  }
+  std::size_t reached = 0;
+  for (int depth = 0; !level.empty(); ++depth) {
+    if (depth == deepest) return false;
+    reached += level.size();
+    std::vector<std::size_t> next;
+    for (const std::size_t i : level) {
+      next.insert(next.end(), children[i].begin(), children[i].end());
+    }
+    level = std::move(next);
+  }
+  return reached == children.size();
+}
+
+bool scenes_name_roots_once(const json& document) {
+  const json& scenes = member(document, "scenes");
+  const std::size_t nodes = member(document, "nodes").size();
+  return scenes.is_array() && std::all_of(scenes.begin(), scenes.end(), [&](const json& scene) {
+           return distinct_indices(scene, "nodes", nodes).has_value();
+         });
+}
+
+/// Elements of the accessor that `index` names; none for an index that names none, which assimp
+/// refuses itself.
+std::uint64_t element_count(const json& accessors, const json& index) {
+  if (!index.is_number_unsigned() || index.get<std::uint64_t>() >= accessors.size()) return 0;
+  return accessors[index.get<std::size_t>()]["count"].get<std::uint64_t>();
+}
+
+/// Elements that all primitives together ask for. Primitives may share accessors, so that a small
+/// file can ask for any number.
+std::uint64_t elements_of_primitives(const json& document) {
+  const json& accessors = member(document, "accessors");
+  std::uint64_t sum = 0;
+  for (const json& mesh : member(document, "meshes")) {
+    for (const json& primitive : member(mesh, "primitives")) {
+      sum += element_count(accessors, member(primitive, "indices"));
+      for (const json& attribute : member(primitive, "attributes")) {
+        sum += element_count(accessors, attribute);
+      }
+    }
+  }
+  return sum;
+}
+
 }  // namespace
 
 void check_glb(const std::filesystem::path& path) {
@@ -72,6 +167,16 @@ void check_glb(const std::filesystem::path& path) {
       !states_sizes(document, "bufferViews", "byteLength", file_size) ||
       !states_sizes(document, "accessors", "count", file_size)) {
     throw broken(path, "holds a buffer of missing or impossible size");
+  }
+  if (!nodes_are_trees(document) || !scenes_name_roots_once(document)) {
+    throw bad_input(path, "has nodes that are no trees of at most 256 levels",
+                    "write it again with every node under one parent");
+  }
+  // Every element takes a byte or more; a few primitives may well share their vertices.
+  constexpr std::uint64_t most_sharing = 4;
+  if (elements_of_primitives(document) > most_sharing * file_size) {
+    throw bad_input(path, "has primitives that repeat the same data too often",
+                    "join its primitives");
   }
 }
 

@@ -24,6 +24,7 @@ namespace fs = std::filesystem;
 
 /// More is no surface that a camera can tell apart; a small file may ask for it by instancing.
 constexpr std::size_t kMostVertices = 20'000'000;
+constexpr std::size_t kMostTriangles = 2 * kMostVertices;  // of a closed surface
 
 std::string lower_extension(const fs::path& path) {
   std::string extension = path.extension().string();
@@ -123,8 +124,10 @@ Mesh flattened(const aiScene& scene, const fs::path& path) {
     const aiMatrix4x4 object_from_node = visit.object_from_parent * visit.node->mTransformation;
     for (unsigned m = 0; m < visit.node->mNumMeshes; ++m) {
       const aiMesh& source = *scene.mMeshes[visit.node->mMeshes[m]];
-      if (mesh.positions.size() + source.mNumVertices > kMostVertices) {
-        throw bad_input(path, "has more than 20 million vertices", "simplify it");
+      if (mesh.positions.size() + source.mNumVertices > kMostVertices ||
+          mesh.triangles.size() + source.mNumFaces > kMostTriangles) {
+        throw bad_input(path, "has more than 20 million vertices or 40 million triangles",
+                        "simplify it");
       }
       append(source, object_from_node, mesh);
     }

@@ -326,6 +326,27 @@ TEST(ReadMesh, RefusesEveryFileCutShort) {
   }
 }
 
+TEST(ReadMesh, RefusesGlbNodesThatAreNoTrees) {
+  const TempFolder folder;
+  const auto with_nodes = [&](const std::string& name, const std::string& nodes) {
+    return write_bytes(folder / name, glb({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}, nodes));
+  };
+  // Node 0 carries the mesh; the nodes appended are its parents.
+  const auto chain = [](int parents) {
+    std::string nodes;
+    for (int i = 0; i < parents; ++i) nodes += "},{\"children\":[" + std::to_string(i) + "]";
+    return nodes;
+  };
+  // 255 parents and the node itself are 256 levels, the most that are taken.
+  EXPECT_EQ(read_mesh(with_nodes("deep.glb", chain(255))).triangles.size(), 1u);
+  for (const std::string& nodes :
+       {chain(256), chain(100'000), std::string(R"(,"children":[0])"),
+        std::string(R"(},{"children":[0,0])"), std::string(R"(},{"children":[0]},{"children":[0])"),
+        std::string(R"(},{"children":[7])"), std::string(R"(},{"children":0)")}) {
+    EXPECT_NE(refusal(with_nodes("odd.glb", nodes)).find("no trees"), std::string::npos);
+  }
+}
+
 TEST(WritePly, LeavesTheOldFileWhenTheFolderIsNotWritable) {
   const TempFolder folder;
   write_bytes(folder / "file", "old");
