@@ -19,6 +19,9 @@ inline constexpr float kUnseenWeight = 1.0f / 1024.0f;
 struct WeightedColour {
   Eigen::Vector3f colour_sum;  ///< sum_j theta_j P_j, display-referred sRGB
   float weight_sum;            ///< sum_j theta_j
+
+  /// What is shown, before the limits of the display.
+  [[nodiscard]] Eigen::Vector3f colour() const { return colour_sum / weight_sum; }
 };
 
 /// A fitted surface light field: what is drawn, saved and exported. Every representation's model is

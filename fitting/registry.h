@@ -21,7 +21,7 @@ struct RepresentationOptions {
   sparse::Options sparse{};
 };
 
-/// Names in the order users should see them; the first is the default.
+/// Names in the order users should see them.
 std::vector<std::string> representation_names();
 
 /// An empty representation with one patch per vertex. Throws std::invalid_argument for an unknown

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/iwls/light_field_model.h"
 
+#include "fitting/half.h"
 #include "fitting/iwls/wendland.h"
 
 #include <algorithm>
@@ -10,23 +11,6 @@
 
 namespace sheen::fitting::iwls {
 namespace {
-
-constexpr double kLargestHalf = 65504.0;
-
-Eigen::half stored(double value) {
-  return Eigen::half(static_cast<float>(std::clamp(value, -kLargestHalf, kLargestHalf)));
-}
-
-bool replace(Eigen::half& place, Eigen::half value) {
-  if (place.x == value.x) return false;
-  place = value;
-  return true;
-}
-
-Eigen::Vector3f colour_at(const Eigen::half* coefficients) {
-  return {static_cast<float>(coefficients[0]), static_cast<float>(coefficients[1]),
-          static_cast<float>(coefficients[2])};
-}
 
 // The polynomial of one centre at d, eq. 6.
 Eigen::Vector3f polynomial_at(const Eigen::half* c, int terms, const Eigen::Vector2f& d) {
@@ -108,7 +92,7 @@ bool LightFieldModel::store(std::size_t patch_idx, std::size_t center_idx,
   assert(values.size() == stride);
   Eigen::half* place = coefficients_.data() + patch_idx * per_patch_ + center_idx * stride;
   bool changed = false;
-  for (const double value : values) changed |= replace(*place++, stored(value));
+  for (const double value : values) changed |= replace(*place++, stored_half(value));
   return changed;
 }
 
@@ -119,7 +103,7 @@ bool LightFieldModel::store_constant(std::size_t patch_idx, const Eigen::Vector3
     for (int term = 0; term < shape_.terms; ++term) {
       for (int channel = 0; channel < 3; ++channel) {
         const float value = term == 0 ? colour[channel] : 0.0f;
-        changed |= replace(*place++, stored(static_cast<double>(value)));
+        changed |= replace(*place++, stored_half(static_cast<double>(value)));
       }
     }
   }

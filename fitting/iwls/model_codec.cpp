@@ -3,6 +3,7 @@
 
 #include "fitting/iwls/light_field_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -37,6 +38,28 @@ std::vector<Eigen::Vector2f> centers_from(const json& list) {
   return centers;
 }
 
+// Whether the supports cover the closed disc, so that eq. 7 never divides by zero. Every direction
+// lies within half a diagonal of a point of the lattice: supports that reach so far beyond each of
+// these points leave no hole.
+bool covers_disc(const ModelShape& shape) {
+  constexpr int steps = 20;
+  constexpr float step = 1.0f / static_cast<float>(steps);
+  constexpr float half_diagonal = 0.7072f * step;
+  const float reach = shape.support_radius - half_diagonal;
+  if (reach <= 0.0f) return false;
+  for (int y = -steps; y <= steps; ++y) {
+    for (int x = -steps; x <= steps; ++x) {
+      const Eigen::Vector2f point = step * Eigen::Vector2i(x, y).cast<float>();
+      if (point.norm() > 1.0f + half_diagonal) continue;
+      const auto covers = [&](const Eigen::Vector2f& center) {
+        return (point - center).squaredNorm() < reach * reach;
+      };
+      if (std::ranges::none_of(shape.centers, covers)) return false;
+    }
+  }
+  return true;
+}
+
 ModelShape shape_from(const json& parameters) {
   ModelShape shape;
   const auto layout = layout_named(required_string(parameters, "layout"));
@@ -50,6 +73,7 @@ ModelShape shape_from(const json& parameters) {
   if (!(shape.support_radius > 1e-3f && shape.support_radius < 1e3f)) {
     throw ModelFault("its \"supportRadius\" is out of range");
   }
+  if (!covers_disc(shape)) throw ModelFault("its centres leave directions without any support");
   return shape;
 }
 

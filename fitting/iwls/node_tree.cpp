@@ -58,8 +58,7 @@ void NodeTree::link(int side, std::size_t offset) {
 NodeTree::Copy NodeTree::copy_to(std::size_t source, std::uint32_t center_idx) const {
   const Node& from = nodes_[source];
   const Node& to = nodes_[first_finest_ + center_idx];
-  return {center_idx, (to.u - from.u) / from.radius, (to.v - from.v) / from.radius,
-          to.radius / from.radius};
+  return {(to.u - from.u) / from.radius, (to.v - from.v) / from.radius, to.radius / from.radius};
 }
 
 }  // namespace sheen::fitting::iwls

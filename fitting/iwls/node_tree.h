@@ -16,7 +16,6 @@ class NodeTree {
  public:
   /// How a node's polynomial becomes that of a finest centre: arguments of `re_expanded`.
   struct Copy {
-    std::uint32_t center_idx;
     double shift_x, shift_y, scale;
   };
 

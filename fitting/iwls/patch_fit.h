@@ -4,6 +4,7 @@
 #include "fitting/iwls/center_layout.h"
 #include "fitting/iwls/light_field_model.h"
 #include "fitting/iwls/solver.h"
+#include "fitting/samples/patch_loop.h"
 
 #include <cstddef>
 
@@ -15,12 +16,6 @@ struct FitSettings {
   FitRule rule;
   /// A node refines when it holds more samples than this: 4 x rank (paper, section 3.3).
   double refine_above = 12;
-};
-
-/// What one call did to the model.
-struct FitOutcome {
-  std::size_t fits = 0;  ///< systems solved
-  bool changed = false;  ///< a stored number changed
 };
 
 /// Fits a node and stores it at the finest centre it stands on.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/mean/mean_light_field.h"
 
+#include "fitting/half.h"
+
 #include <cassert>
 #include <utility>
 
@@ -21,8 +23,7 @@ WeightedColour MeanLightField::evaluate(std::size_t patch_idx, const Eigen::Vect
 }
 
 Eigen::Vector3f MeanLightField::mean_colour(std::size_t patch_idx) const {
-  const Eigen::half* c = coefficients_.data() + 3 * patch_idx;
-  return {static_cast<float>(c[0]), static_cast<float>(c[1]), static_cast<float>(c[2])};
+  return colour_at(coefficients_.data() + 3 * patch_idx);
 }
 
 bool MeanLightField::store(std::size_t patch_idx, const Eigen::Vector3f& colour, bool observed) {
@@ -30,8 +31,7 @@ bool MeanLightField::store(std::size_t patch_idx, const Eigen::Vector3f& colour,
   bool changed = std::exchange(observed_[patch_idx], flag) != flag;
   for (int channel = 0; channel < 3; ++channel) {
     Eigen::half& place = coefficients_[3 * patch_idx + static_cast<std::size_t>(channel)];
-    const Eigen::half value(colour[channel]);
-    changed |= std::exchange(place, value).x != value.x;
+    changed |= replace(place, stored_half(static_cast<double>(colour[channel])));
   }
   return changed;
 }

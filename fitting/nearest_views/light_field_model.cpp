@@ -2,6 +2,7 @@
 #include "fitting/nearest_views/light_field_model.h"
 
 #include "core/geometry/disc_map.h"
+#include "fitting/half.h"
 
 #include <algorithm>
 #include <cassert>
@@ -28,16 +29,14 @@ Eigen::Vector2f direction_of(const StoredSample& sample) {
 }
 
 Eigen::Vector3f colour_of(const StoredSample& sample) {
-  return {static_cast<float>(sample[2]), static_cast<float>(sample[3]),
-          static_cast<float>(sample[4])};
+  return colour_at(sample.data() + 2);
 }
 
 StoredSample stored(const Eigen::Vector2f& uv, const Eigen::Vector3f& colour) {
-  constexpr float largest_half = 65504.0f;
   assert(uv.allFinite() && colour.allFinite());
-  const Eigen::Vector3f clamped = colour.cwiseMax(-largest_half).cwiseMin(largest_half);
-  return {Eigen::half(uv.x()), Eigen::half(uv.y()), Eigen::half(clamped.x()),
-          Eigen::half(clamped.y()), Eigen::half(clamped.z())};
+  const Eigen::Vector3d rgb = colour.cast<double>();
+  return {Eigen::half(uv.x()), Eigen::half(uv.y()), stored_half(rgb.x()), stored_half(rgb.y()),
+          stored_half(rgb.z())};
 }
 
 void insert(const Neighbour& found, Neighbours& nearest) {

@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/spherical_harmonics/harmonics_representation.h"
 
-#include "core/concurrency/parallel_for.h"
-#include "fitting/samples/change_list.h"
+#include "fitting/samples/patch_loop.h"
 #include "fitting/samples/sample.h"
 #include "fitting/spherical_harmonics/basis.h"
 #include "fitting/spherical_harmonics/light_field_model.h"
-#include "fitting/unseen/fill_unseen.h"
 
 #include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cassert>
 #include <cmath>
+#include <memory>
+#include <vector>
 
 namespace sheen::fitting::spherical_harmonics {
 namespace {
@@ -63,78 +61,55 @@ class HarmonicsRepresentation final : public Representation {
  public:
   HarmonicsRepresentation(const core::VertexNeighbours& neighbours, const Options& options,
                           int threads)
-      : neighbours_(neighbours),
-        options_(options),
-        threads_(threads),
+      : options_(options),
+        loop_(neighbours, threads),
         systems_(neighbours.vertex_count()),
         model_(options.degree, neighbours.vertex_count()) {}
 
   const ModelUpdate& absorb(const core::SampleBatch& batch) override;
   const ModelUpdate& finish() override;
   [[nodiscard]] const LightField& light_field() const override { return model_; }
-  [[nodiscard]] FitStatistics statistics() const override { return statistics_; }
+  [[nodiscard]] FitStatistics statistics() const override { return loop_.statistics(); }
 
  private:
-  // Returns whether the model changed.
-  bool absorb_sample(std::size_t patch_idx, const Sample& sample);
+  FitOutcome absorb_sample(std::size_t patch_idx, const Sample& sample);
 
-  core::VertexNeighbours neighbours_;
   Options options_;
-  int threads_;
+  PatchLoop loop_;
   // Made with a patch's first sample: 1.5 kB each at degree 3, nothing for what is never seen.
   std::vector<std::unique_ptr<NormalEquations<kTerms>>> systems_;
   LightFieldModel model_;
-  FitStatistics statistics_;
-  ChangeList changes_;
-  ModelUpdate update_;
 };
 
 template <std::size_t kTerms>
-bool HarmonicsRepresentation<kTerms>::absorb_sample(std::size_t patch_idx, const Sample& sample) {
+FitOutcome HarmonicsRepresentation<kTerms>::absorb_sample(std::size_t patch_idx,
+                                                          const Sample& sample) {
   auto& system = systems_[patch_idx];
   if (!system) system = std::make_unique<NormalEquations<kTerms>>();
   system->add(sample);
   const Coefficients<kTerms> theta = system->solve(options_.ridge);
   bool changed = model_.store_observed(patch_idx, true);
   changed |= model_.store(patch_idx, {theta.data(), static_cast<std::size_t>(theta.size())});
-  return changed;
+  return {1, changed};
 }
 
 template <std::size_t kTerms>
 const ModelUpdate& HarmonicsRepresentation<kTerms>::absorb(const core::SampleBatch& batch) {
-  changes_.reset(batch.size());
-  std::atomic<std::size_t> used{0};
-  core::parallel_for(batch.size(), threads_, [&](std::size_t begin, std::size_t end) {
-    std::size_t used_here = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const auto sample = usable_sample(batch, i);
-      if (!sample) continue;
-      ++used_here;
-      changes_.mark(i, absorb_sample(batch.patch[i], *sample));
-    }
-    used += used_here;
+  return loop_.absorb(batch, [this](std::size_t patch_idx, const Sample& sample) {
+    return absorb_sample(patch_idx, sample);
   });
-  statistics_.samples += used;
-  statistics_.fits += used;
-  statistics_.patch_views += used;
-  changes_.list([&](std::size_t i) { return batch.patch[i]; }, update_);
-  return update_;
 }
 
 template <std::size_t kTerms>
 const ModelUpdate& HarmonicsRepresentation<kTerms>::finish() {
   // Means of the samples, not of the model, whose far side may be anything.
-  std::vector<Eigen::Vector3f> colours(model_.patch_count(), Eigen::Vector3f::Zero());
-  for (std::size_t patch = 0; patch < colours.size(); ++patch) {
-    if (systems_[patch]) colours[patch] = systems_[patch]->mean();
-  }
-  fill_unseen(neighbours_, model_.observed(), colours);
-  changes_.reset(colours.size());
-  for (std::size_t patch = 0; patch < colours.size(); ++patch) {
-    if (!systems_[patch]) changes_.mark(patch, model_.store_constant(patch, colours[patch]));
-  }
-  changes_.list([](std::size_t patch) { return static_cast<std::uint32_t>(patch); }, update_);
-  return update_;
+  const auto mean_of = [this](std::size_t patch_idx) -> Eigen::Vector3f {
+    return systems_[patch_idx] ? systems_[patch_idx]->mean() : Eigen::Vector3f::Zero();
+  };
+  return loop_.finish(model_.observed(), nothing_to_solve, mean_of,
+                      [this](std::size_t patch_idx, const Eigen::Vector3f& colour) {
+                        return model_.store_constant(patch_idx, colour);
+                      });
 }
 
 }  // namespace
@@ -142,7 +117,6 @@ const ModelUpdate& HarmonicsRepresentation<kTerms>::finish() {
 std::unique_ptr<Representation> make_harmonics_representation(
     const core::VertexNeighbours& neighbours, const Options& options, int threads) {
   options.check();
-  assert(threads >= 1);
   switch (options.degree) {
     case 1:
       return std::make_unique<HarmonicsRepresentation<4>>(neighbours, options, threads);

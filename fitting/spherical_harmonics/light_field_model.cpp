@@ -2,8 +2,8 @@
 #include "fitting/spherical_harmonics/light_field_model.h"
 
 #include "core/geometry/disc_map.h"
+#include "fitting/half.h"
 
-#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -11,13 +11,6 @@
 
 namespace sheen::fitting::spherical_harmonics {
 namespace {
-
-constexpr double kLargestHalf = 65504.0;
-
-Eigen::Vector3f colour_at(const Eigen::half* coefficients) {
-  return {static_cast<float>(coefficients[0]), static_cast<float>(coefficients[1]),
-          static_cast<float>(coefficients[2])};
-}
 
 template <std::size_t kTerms>
 Eigen::Vector3f sum_of_terms(const Eigen::half* coefficients, const Eigen::Vector3f& direction) {
@@ -84,8 +77,7 @@ bool LightFieldModel::store(std::size_t patch_idx, std::span<const double> value
   bool changed = false;
   for (const double value : values) {
     assert(std::isfinite(value));
-    const Eigen::half rounded(static_cast<float>(std::clamp(value, -kLargestHalf, kLargestHalf)));
-    changed |= std::exchange(*place++, rounded).x != rounded.x;
+    changed |= replace(*place++, stored_half(value));
   }
   return changed;
 }

@@ -106,6 +106,13 @@ TEST_F(HostileModelFile, BrokenStructureIsRefused) {
       [](json& d) { d["extensions"][kExtension]["parameters"]["terms"] = -3; },
       [](json& d) { d["extensions"][kExtension]["parameters"]["supportRadius"] = 0; },
       [](json& d) { d["extensions"][kExtension]["parameters"]["supportRadius"] = 1e300; },
+      // Sixteen cells of 1/2: supports below half a diagonal, .354, leave holes between them.
+      [](json& d) { d["extensions"][kExtension]["parameters"]["supportRadius"] = 0.35; },
+      // All centres in one corner reach no further than .707 from it.
+      [](json& d) {
+        json& centers = d["extensions"][kExtension]["parameters"]["centers"];
+        for (json& center : centers) center = centers[0];
+      },
       [](json& d) { d["extensions"][kExtension]["parameters"]["centers"] = json::array(); },
       [](json& d) {
         d["extensions"][kExtension]["parameters"]["centers"].push_back({0, 0});
