@@ -3,6 +3,7 @@
 
 #include "core/concurrency/parallel_for.h"
 #include "core/geometry/tangent_frame.h"
+#include "fitting/half.h"
 #include "render/shaders/shader_text.h"
 #include "render/surface/patch_buffer.h"
 
@@ -18,8 +19,7 @@ namespace sheen::render::evaluated {
 namespace {
 
 Eigen::half half(float value) {
-  constexpr float largest_half = 65504.0f;
-  return Eigen::half(std::clamp(value, -largest_half, largest_half));
+  return fitting::stored_half(static_cast<double>(value));
 }
 
 /// One texel per patch: colour sum, weight sum. Half floats are within 2^-11 of the quotient.

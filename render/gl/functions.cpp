@@ -17,7 +17,8 @@ void load(const Context& context, const char* name, Pointer& pointer) {
 
 }  // namespace
 
-Functions load_functions(const Context& context) {
+Functions load_functions(Context& context) {
+  context.make_current();
   Functions gl;
 #define SHEEN_GL_LOAD(type, name) load(context, "gl" #name, gl.name);
   SHEEN_GL_FUNCTIONS(SHEEN_GL_LOAD)

@@ -68,8 +68,9 @@ struct Functions {
 #undef SHEEN_GL_MEMBER
 };
 
-/// Fills the table. Throws core::Error (run_failed) naming the first entry point the context lacks.
-Functions load_functions(const Context& context);
+/// Makes the context current and fills the table. Throws core::Error (run_failed) naming the first
+/// entry point the context lacks.
+Functions load_functions(Context& context);
 
 /// Value of an integer limit such as GL_MAX_TEXTURE_SIZE; the context is current.
 GLint integer_limit(const Functions& gl, GLenum name);

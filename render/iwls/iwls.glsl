@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Incremental weighted least squares: polynomials at centres, blended by Wendland weights (eq. 4, 7).
+// Incremental weighted least squares: polynomials at centres, blended by Wendland weights (eqs. 5 to 7).
 // CENTRES, TERMS, SUPPORT and centre_positions[] are written in front of this text.
 layout(binding = 0) uniform samplerBuffer patch_coefficients;
 

@@ -5,7 +5,6 @@
 #include "render/shaders/shader_text.h"
 #include "render/surface/patch_buffer.h"
 
-#include <algorithm>
 #include <cassert>
 #include <iomanip>
 #include <limits>
@@ -45,14 +44,7 @@ class IwlsPatchShader final : public PatchShader {
 
   std::size_t upload(std::span<const std::uint32_t> patches) override {
     return buffer_.upload(patches, [this](std::size_t patch_idx, std::span<Eigen::half> texels) {
-      const std::span<const Eigen::half> source = model_.coefficients(patch_idx);
-      for (std::size_t texel = 0; 3 * texel < source.size(); ++texel) {
-        std::copy_n(source.begin() + static_cast<std::ptrdiff_t>(3 * texel), 3,
-                    texels.begin() + static_cast<std::ptrdiff_t>(4 * texel));
-        texels[4 * texel + 3] = Eigen::half(0.0f);
-      }
-      const bool observed = model_.observed()[patch_idx] != 0;
-      texels[3] = Eigen::half(observed ? 1.0f : fitting::kUnseenWeight);
+      write_colours(model_.coefficients(patch_idx), model_.observed()[patch_idx] != 0, texels);
     });
   }
 

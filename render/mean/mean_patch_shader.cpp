@@ -5,7 +5,6 @@
 #include "render/shaders/shader_text.h"
 #include "render/surface/patch_buffer.h"
 
-#include <algorithm>
 #include <cassert>
 
 namespace sheen::render::mean {
@@ -27,9 +26,8 @@ class MeanPatchShader final : public PatchShader {
 
   std::size_t upload(std::span<const std::uint32_t> patches) override {
     return buffer_.upload(patches, [this](std::size_t patch_idx, std::span<Eigen::half> texel) {
-      std::ranges::copy(light_field_.coefficients().subspan(3 * patch_idx, 3), texel.begin());
-      const bool observed = light_field_.observed()[patch_idx] != 0;
-      texel[3] = Eigen::half(observed ? 1.0f : fitting::kUnseenWeight);
+      write_colours(light_field_.coefficients().subspan(3 * patch_idx, 3),
+                    light_field_.observed()[patch_idx] != 0, texel);
     });
   }
 

@@ -5,7 +5,6 @@
 #include "render/shaders/shader_text.h"
 #include "render/surface/patch_buffer.h"
 
-#include <algorithm>
 #include <cassert>
 #include <string>
 
@@ -30,13 +29,7 @@ class HarmonicsPatchShader final : public PatchShader {
 
   std::size_t upload(std::span<const std::uint32_t> patches) override {
     return buffer_.upload(patches, [this](std::size_t patch_idx, std::span<Eigen::half> texels) {
-      const std::span<const Eigen::half> source = model_.coefficients(patch_idx);
-      for (std::size_t texel = 0; 3 * texel < source.size(); ++texel) {
-        std::ranges::copy(source.subspan(3 * texel, 3), texels.subspan(4 * texel).begin());
-        texels[4 * texel + 3] = Eigen::half(0.0f);
-      }
-      const bool observed = model_.observed()[patch_idx] != 0;
-      texels[3] = Eigen::half(observed ? 1.0f : fitting::kUnseenWeight);
+      write_colours(model_.coefficients(patch_idx), model_.observed()[patch_idx] != 0, texels);
     });
   }
 

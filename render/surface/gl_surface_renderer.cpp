@@ -22,7 +22,7 @@ class GlSurfaceRenderer final : public SurfaceRenderer {
   GlSurfaceRenderer(Context& context, const core::Mesh& mesh,
                     const fitting::LightField& light_field)
       : context_(context),
-        gl_(gl::load_functions(made_current(context))),
+        gl_(gl::load_functions(context)),
         patches_(make_patch_shader(gl_, mesh, light_field)),
         pass_(gl_, mesh, patches_->glsl()),
         target_(gl_, true) {
@@ -57,11 +57,6 @@ class GlSurfaceRenderer final : public SurfaceRenderer {
   }
 
  private:
-  static const Context& made_current(Context& context) {
-    context.make_current();
-    return context;
-  }
-
   [[nodiscard]] RenderedView split() const {
     RenderedView view;
     view.image.create(pixels_.size(), CV_8UC3);

@@ -2,7 +2,9 @@
 #include "render/surface/patch_buffer.h"
 
 #include "core/diagnostics/error.h"
+#include "fitting/light_field.h"
 
+#include <algorithm>
 #include <cassert>
 #include <numeric>
 #include <string>
@@ -46,6 +48,16 @@ void PatchBuffer::send(std::size_t first_patch) const {
   gl_.NamedBufferSubData(
       buffer_.name(), static_cast<GLintptr>(first_patch * halfs_per_patch_ * sizeof(Eigen::half)),
       static_cast<GLsizeiptr>(staging_.size() * sizeof(Eigen::half)), staging_.data());
+}
+
+void write_colours(std::span<const Eigen::half> colours, bool observed,
+                   std::span<Eigen::half> texels) {
+  assert(3 * texels.size() == 4 * colours.size());
+  for (std::size_t texel = 0; 3 * texel < colours.size(); ++texel) {
+    std::ranges::copy(colours.subspan(3 * texel, 3), texels.subspan(4 * texel).begin());
+    texels[4 * texel + 3] = Eigen::half(0.0f);
+  }
+  texels[3] = Eigen::half(observed ? 1.0f : fitting::kUnseenWeight);
 }
 
 std::vector<std::uint32_t> all_patches(std::size_t patch_count) {

@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -51,6 +52,11 @@ class PatchBuffer {
   gl::Buffer buffer_;
   gl::Texture texture_;
 };
+
+/// Texels of a patch whose model is a list of colours: r, g, b each, and in alpha of the first the
+/// weight with which the patch enters the interpolation. `colours` holds [texel][r, g, b].
+void write_colours(std::span<const Eigen::half> colours, bool observed,
+                   std::span<Eigen::half> texels);
 
 /// 0, 1, ... patch_count - 1: the update that uploads everything.
 std::vector<std::uint32_t> all_patches(std::size_t patch_count);

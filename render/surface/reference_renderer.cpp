@@ -98,8 +98,7 @@ class ReferenceRenderer final : public SurfaceRenderer {
       for (std::size_t i = begin; i < end; ++i) {
         const bool seen = hits_[i].triangle_idx != kNoTriangle;
         const fitting::WeightedColour sums = seen ? interpolate(hits_[i]) : kNothing;
-        const Eigen::Vector3f rgb =
-            255.0f * (sums.colour_sum / sums.weight_sum).cwiseMax(0.0f).cwiseMin(1.0f);
+        const Eigen::Vector3f rgb = 255.0f * sums.colour().cwiseMax(0.0f).cwiseMin(1.0f);
         for (int channel = 0; channel < 3; ++channel) {
           view.image.data[3 * i + static_cast<std::size_t>(channel)] =
               static_cast<std::uint8_t>(std::lround(rgb[2 - channel]));

@@ -25,7 +25,7 @@ class DepthVisibility final : public core::Visibility {
   DepthVisibility(Context& context, const core::Mesh& mesh)
       : context_(context),
         mesh_(mesh),
-        gl_(gl::load_functions(made_current(context))),
+        gl_(gl::load_functions(context)),
         pass_(gl_, mesh, {}),
         target_(gl_, false) {}
 
@@ -53,11 +53,6 @@ class DepthVisibility final : public core::Visibility {
   }
 
  private:
-  static const Context& made_current(Context& context) {
-    context.make_current();
-    return context;
-  }
-
   void draw_depth(const core::CameraModel& camera, const Eigen::Isometry3d& camera_from_object) {
     context_.make_current();
     width_px_ = camera.width_px();

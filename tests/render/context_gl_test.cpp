@@ -60,7 +60,7 @@ TEST_F(GlTest, OffersVersion45) {
 }
 
 TEST_F(GlTest, MissingFunctionIsNamed) {
-  const LackingContext lacking(*context_, "glTextureBuffer");
+  LackingContext lacking(*context_, "glTextureBuffer");
   try {
     gl::load_functions(lacking);
     FAIL() << "the missing function was not noticed";
