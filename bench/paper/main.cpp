@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <utility>
+
 using namespace sheen::bench;
 
 int main(int argc, char** argv) {

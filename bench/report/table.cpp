@@ -76,4 +76,8 @@ std::string decimals(double value, int count) {
   return fmt::format("{:.{}f}", value, count);
 }
 
+std::string verdict(bool met) {
+  return met ? "met" : "missed";
+}
+
 }  // namespace sheen::bench

@@ -24,4 +24,7 @@ void write_csv(const std::filesystem::path& path, const Table& table);
 /// Fixed decimals, as tables show numbers.
 std::string decimals(double value, int count);
 
+/// Whether a target was met, as tables say it.
+std::string verdict(bool met);
+
 }  // namespace sheen::bench

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "bench/scene/scene_tables.h"
 
+#include "bench/report/distinct.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace sheen::bench {
@@ -24,23 +27,8 @@ std::optional<SceneRow> find(std::span<const SceneRow> rows, const std::string& 
   return std::nullopt;
 }
 
-template <typename Row, typename Get>
-auto distinct(std::span<const Row> rows, const Get& get) {
-  std::vector<std::decay_t<decltype(get(rows.front()))>> values;
-  for (const Row& row : rows) {
-    if (std::find(values.begin(), values.end(), get(row)) == values.end()) {
-      values.push_back(get(row));
-    }
-  }
-  return values;
-}
-
 std::vector<std::string> methods_of(std::span<const SceneRow> rows) {
   return distinct(rows, [](const SceneRow& row) { return row.method; });
-}
-
-std::string verdict(bool met) {
-  return met ? "met" : "missed";
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "bench/stability/confidence.h"
 
+#include "bench/study/measure.h"
 #include "bench/study/rank_correlation.h"
 
 #include <fmt/core.h>
 
 #include <array>
-#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -21,14 +21,6 @@ struct Predictions {
   std::vector<double> actual;
 };
 
-// Root mean square over the channels of what is shown.
-double error_of(const fitting::LightField& light_field, std::size_t patch, const TestSample& test) {
-  const fitting::WeightedColour weighted = light_field.evaluate(patch, test.uv);
-  const Eigen::Vector3f colour = weighted.colour_sum / weighted.weight_sum;
-  const Eigen::Vector3f shown = colour.cwiseMax(0.0f).cwiseMin(1.0f);
-  return std::sqrt(static_cast<double>((shown - test.rgb).squaredNorm()) / 3.0);
-}
-
 Predictions predictions(const fitting::Representation& representation, const StudySet& set) {
   Predictions result;
   for (std::size_t patch = 0; patch < set.points.size(); ++patch) {
@@ -36,7 +28,7 @@ Predictions predictions(const fitting::Representation& representation, const Stu
       const auto predicted = representation.predicted_error(patch, test.uv);
       if (!predicted) continue;
       result.predicted.push_back(static_cast<double>(*predicted));
-      result.actual.push_back(error_of(representation.light_field(), patch, test));
+      result.actual.push_back(point_error(representation.light_field(), patch, {&test, 1}).rms);
     }
   }
   return result;

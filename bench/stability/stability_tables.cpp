@@ -1,35 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include "bench/stability/stability_tables.h"
 
+#include "bench/report/distinct.h"
+
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <iterator>
 #include <optional>
+#include <utility>
 
 namespace sheen::bench {
 namespace {
 
 constexpr std::size_t kShownSamples = 64;
 
-// Distinct values in order of appearance.
-template <typename Value, typename Get>
-std::vector<Value> distinct(std::span<const StabilityRow> rows, const Get& get) {
-  std::vector<Value> values;
-  for (const StabilityRow& row : rows) {
-    const Value value = get(row);
-    if (std::find(values.begin(), values.end(), value) == values.end()) values.push_back(value);
-  }
-  return values;
-}
-
 std::vector<std::string> methods_of(std::span<const StabilityRow> rows) {
-  return distinct<std::string>(rows, [](const StabilityRow& row) { return row.method; });
+  return distinct(rows, [](const StabilityRow& row) { return row.method; });
 }
 
 std::vector<ViewSet> view_sets_of(std::span<const StabilityRow> rows) {
-  return distinct<ViewSet>(rows, [](const StabilityRow& row) { return row.views; });
+  return distinct(rows, [](const StabilityRow& row) { return row.views; });
 }
 
 const StabilityRow* find(std::span<const StabilityRow> rows, ViewSet views,
@@ -121,8 +113,8 @@ Table error_against_settings(std::span<const StabilityRow> rows, ViewSet views) 
   std::vector<StabilityRow> of_views;
   std::copy_if(rows.begin(), rows.end(), std::back_inserter(of_views),
                [&](const StabilityRow& row) { return row.views == views; });
-  const auto settings =
-      distinct<std::string>(of_views, [](const StabilityRow& row) { return row.setting; });
+  const auto settings = distinct(std::span<const StabilityRow>(of_views),
+                                 [](const StabilityRow& row) { return row.setting; });
   table.columns.insert(table.columns.end(), settings.begin(), settings.end());
   for (const std::string& method : methods_of(rows)) {
     std::vector<std::string> line{method};
@@ -161,8 +153,7 @@ Table monotonicity(std::span<const StabilityRow> rows) {
   const std::vector<ViewSet> sets = view_sets_of(rows);
   for (const ViewSet views : sets) table.columns.emplace_back(name_of(views));
   table.columns.emplace_back("any other setting");
-  const auto settings =
-      distinct<std::string>(rows, [](const StabilityRow& row) { return row.setting; });
+  const auto settings = distinct(rows, [](const StabilityRow& row) { return row.setting; });
   for (const std::string& method : methods_of(rows)) {
     std::vector<std::string> line{method};
     Increase other{-1.0, 0, ""};
@@ -185,8 +176,7 @@ Table monotonicity_of(std::span<const StabilityRow> rows, const std::string& met
   Table table{fmt::format("Largest increase of the RMS by more samples: {}", method),
               {"views", "setting", "increase"},
               {}};
-  const auto settings =
-      distinct<std::string>(rows, [](const StabilityRow& row) { return row.setting; });
+  const auto settings = distinct(rows, [](const StabilityRow& row) { return row.setting; });
   for (const ViewSet views : view_sets_of(rows)) {
     for (const std::string& setting : settings) {
       const Increase increase = worst_increase(rows, views, setting, method);
@@ -201,7 +191,6 @@ Table stability_targets(std::span<const StabilityRow> rows, const std::string& m
   Table table{fmt::format("Targets of {} in the stability suite", method),
               {"target", "wanted", "measured", "verdict"},
               {}};
-  const auto verdict = [](bool met) { return std::string(met ? "met" : "missed"); };
   const auto on_arc = [&](const std::string& name) {
     return find(rows, ViewSet::arc, "base", kShownSamples, name);
   };

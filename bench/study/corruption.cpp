@@ -3,6 +3,7 @@
 
 #include "core/geometry/tangent_frame.h"
 
+#include <algorithm>
 #include <numbers>
 
 namespace sheen::bench {

@@ -4,6 +4,7 @@
 #include "bench/study/random.h"
 #include "core/geometry/tangent_frame.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <numbers>

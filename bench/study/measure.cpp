@@ -42,8 +42,7 @@ PointError point_error(const fitting::LightField& light_field, std::size_t patch
   SquaredSum gap;
   double worst = 0;
   for (const TestSample& sample : test) {
-    const fitting::WeightedColour weighted = light_field.evaluate(patch_idx, sample.uv);
-    const Eigen::Vector3f colour = weighted.colour_sum / weighted.weight_sum;
+    const Eigen::Vector3f colour = light_field.evaluate(patch_idx, sample.uv).colour();
     const Eigen::Vector3f shown = colour.cwiseMax(0.0f).cwiseMin(1.0f);
     const auto squared = static_cast<double>((shown - sample.rgb).squaredNorm());
     all.add(squared, 3);
@@ -106,13 +105,10 @@ Measurement measure(const Method& method, const StudySet& set) {
   const double elapsed_us = thread_cpu_us() - start_us;
   // Compare.
   const fitting::LightField& light_field = representation->light_field();
-  const fitting::FitStatistics statistics = representation->statistics();
   Measurement result;
   result.points = point_errors(light_field, set);
   result.coefficients_per_point =
       static_cast<double>(light_field.coefficient_count()) / static_cast<double>(set.points.size());
-  result.fits_per_view = static_cast<double>(statistics.fits) /
-                         static_cast<double>(std::max<std::size_t>(1, statistics.patch_views));
   result.fit_us = elapsed_us / static_cast<double>(std::max<std::size_t>(1, set.sample_count()));
   return result;
 }

@@ -22,8 +22,7 @@ struct PointError {
 struct Measurement {
   std::vector<PointError> points;
   double coefficients_per_point = 0;
-  double fits_per_view = 0;  ///< least-squares systems per point and view
-  double fit_us = 0;         ///< CPU time of absorb and finish per sample, microseconds
+  double fit_us = 0;  ///< CPU time of absorb and finish per sample, microseconds
 
   [[nodiscard]] double mean_rms() const;    ///< over points
   [[nodiscard]] double rms_spread() const;  ///< standard deviation over points

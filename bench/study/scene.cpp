@@ -6,8 +6,11 @@
 #include "bench/study/view_sets.h"
 #include "core/geometry/tangent_frame.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 namespace sheen::bench {
 namespace {
@@ -153,8 +156,6 @@ Scene make_scene(const SceneOptions& options, const Environment& environment) {
   Scene scene{{"scene-path", frame_count, {}}, {"scene-scattered", frame_count, {}}};
   const PointMaker maker{options, environment, training, path_eyes, scattered_eyes};
   for (std::size_t i = 0; i < options.points; ++i) maker.add(i, scene);
-  scene.mean_samples_per_point =
-      static_cast<double>(scene.path.sample_count()) / static_cast<double>(options.points);
   return scene;
 }
 

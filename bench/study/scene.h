@@ -25,7 +25,6 @@ struct SceneOptions {
 struct Scene {
   StudySet path;       ///< tests along another handheld walk
   StudySet scattered;  ///< the same training, tests from cameras scattered over the same heights
-  double mean_samples_per_point = 0;
 };
 
 /// Normals over the sphere down to 12 degrees below the horizon, far camera on a handheld walk of

@@ -99,7 +99,7 @@ TEST(Scene, PointsSeeAsManyViewsAsAsked) {
   options.points = 100;
   options.samples_per_point = 48;
   const Scene scene = make_scene(options, studio_environment());
-  EXPECT_NEAR(scene.mean_samples_per_point, 48.0, 1.0);
+  EXPECT_NEAR(static_cast<double>(scene.path.sample_count()) / 100.0, 48.0, 1.0);
   // 40 % Lambert, 30 % GGX .60, 10 % each of the rest.
   EXPECT_EQ(only(scene.path, MaterialClass::lambert).points.size(), 40u);
   EXPECT_EQ(only(scene.path, MaterialClass::ggx60).points.size(), 30u);
