@@ -2,6 +2,7 @@
 #include "app/pipeline/patch_mesh.h"
 
 #include "core/mesh/refine_mesh.h"
+#include "core/numerics/median.h"
 
 #include <Eigen/Geometry>
 
@@ -36,9 +37,7 @@ std::optional<double> pixel_footprint_m(const capture::Session& session, const c
     }
   }
   if (distances_m.empty()) return std::nullopt;
-  const auto middle = distances_m.begin() + static_cast<std::ptrdiff_t>(distances_m.size() / 2);
-  std::nth_element(distances_m.begin(), middle, distances_m.end());
-  return *middle / session.camera.intrinsics().focal_px.x();
+  return core::upper_median(distances_m) / session.camera.intrinsics().focal_px.x();
 }
 
 core::Mesh texel_mesh(const core::Mesh& mesh, double pixel_footprint_m, double spacing_px) {

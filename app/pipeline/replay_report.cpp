@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "app/pipeline/replay_report.h"
 
+#include "core/numerics/median.h"
+
 #include <fmt/format.h>
 #include <sys/resource.h>
 
@@ -37,10 +39,7 @@ int rejected(const ProducerStatistics& frames) {
 }
 
 double median_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return values.empty() ? 0 : core::upper_median(values);
 }
 
 nlohmann::ordered_json to_json(const core::StageSummary& summary) {

@@ -2,6 +2,7 @@
 #include "capture/pose/blur.h"
 
 #include "capture/pose/edge_profile.h"
+#include "core/numerics/median.h"
 
 #include <algorithm>
 
@@ -12,9 +13,7 @@ constexpr int kPositions = 9;
 
 std::optional<double> median(std::vector<double>& values) {
   if (values.empty()) return std::nullopt;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return core::upper_median(values);
 }
 
 void measure_side(const cv::Mat& grey, const TagSide& side, double half_length_px,

@@ -3,6 +3,7 @@
 
 #include "capture/pose/joint_pose.h"
 #include "core/alignment/projection_derivative.h"
+#include "core/numerics/median.h"
 
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
@@ -210,9 +211,7 @@ double median_shift_m(const Board& given, const Board& refined,
                         refined.tags.at(id).stage_from_tag.translation())
                            .norm());
   }
-  const auto middle = shifts_m.begin() + static_cast<std::ptrdiff_t>(shifts_m.size() / 2);
-  std::nth_element(shifts_m.begin(), middle, shifts_m.end());
-  return *middle;
+  return core::upper_median(shifts_m);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "core/alignment/align_pose.h"
 
 #include "core/alignment/projection_derivative.h"
+#include "core/numerics/median.h"
 
 #include <Eigen/Cholesky>
 
@@ -72,8 +73,8 @@ class Aligner {
     for_each_residual(picture, state, [&](std::size_t, double residual, const auto&, const auto&) {
       scratch_.push_back(std::abs(residual));
     });
-    spread_ =
-        scratch_.empty() ? kSmallestSpread : std::max(kSmallestSpread, 1.4826 * median(scratch_));
+    spread_ = scratch_.empty() ? kSmallestSpread
+                               : std::max(kSmallestSpread, 1.4826 * upper_median(scratch_));
   }
 
   [[nodiscard]] double spread() const { return spread_; }
@@ -187,14 +188,8 @@ class Aligner {
       scratch_.push_back(value / static_cast<double>(points_.luma[i]));
     });
     if (scratch_.size() < limits_.min_points) return std::nullopt;
-    const double ratio = median(scratch_);
+    const double ratio = upper_median(scratch_);
     return ratio > 0 ? std::optional(ratio) : std::nullopt;
-  }
-
-  static double median(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
   }
 
   /// Strength of the prior in units of squared residual per px^2 of mean square motion.

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "core/alignment/exposure.h"
 
-#include <algorithm>
+#include "core/numerics/median.h"
+
 #include <cassert>
 
 namespace sheen::core {
@@ -20,9 +21,7 @@ std::optional<double> estimate_gain(const std::vector<float>& measured,
     ratios.push_back(static_cast<double>(measured[i]) / static_cast<double>(predicted[i]));
   }
   if (ratios.empty() || ratios.size() < limits.min_pairs) return std::nullopt;
-  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
-  std::nth_element(ratios.begin(), middle, ratios.end());
-  const double gain = *middle;
+  const double gain = upper_median(ratios);
   if (gain > limits.largest_change || gain < 1 / limits.largest_change) return std::nullopt;
   return gain;
 }
