@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <new>
 #include <stdexcept>
 
 namespace {
@@ -67,6 +68,9 @@ int main(int argc, char** argv) {
   } catch (const std::invalid_argument& error) {
     std::fprintf(stderr, "sheen: %s\n", error.what());
     return kBadInput;
+  } catch (const std::bad_alloc&) {
+    std::fputs("sheen: memory is used up; close other programs or take a smaller mesh\n", stderr);
+    return kRunFailed;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "sheen: %s\n", error.what());
     return kRunFailed;

@@ -4,6 +4,7 @@
 #include "core/diagnostics/error.h"
 #include "core/files/staged_output.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <thread>
@@ -31,10 +32,17 @@ void CommandContext::note(const std::string& line) const {
 
 void CommandContext::publish(const nlohmann::ordered_json& document,
                              const std::string& text) const {
-  if (!report_path.empty()) write_report(report_path, document.dump(2));
-  const std::string& answer = json ? document.dump(2) : text;
+  // Paths may hold bytes that are no UTF-8; they must not cost the whole report.
+  const std::string json_text =
+      document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  if (!report_path.empty()) write_report(report_path, json_text);
+  const std::string& answer = json ? json_text : text;
   std::fputs(answer.c_str(), stdout);
   if (!answer.empty() && answer.back() != '\n') std::fputc('\n', stdout);
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw core::Error(core::Error::Kind::run_failed, "standard output", "could not be written",
+                      "check free space or who reads it");
+  }
 }
 
 void add_common_options(CLI::App& command, CommandContext& context) {

@@ -10,8 +10,7 @@
 
 namespace sheen::app {
 
-/// What every subcommand is told and how it answers (contract: results on stdout, the rest on
-/// stderr).
+/// What every subcommand is told and how it answers: results on stdout, the rest on stderr.
 struct CommandContext {
   int threads = 1;
   bool quiet = false;

@@ -95,10 +95,7 @@ std::optional<capture::BoardRefinement> refine_board(const capture::Session& ses
                                                      const ReplayOptions& options,
                                                      const CommandContext& context) {
   if (!options.refine_board) return std::nullopt;
-  const bool from_file =
-      options.session.pose_source == PoseSource::file ||
-      (options.session.pose_source == PoseSource::automatic && session.poses.has_value());
-  if (from_file) {
+  if (takes_poses_from_file(session, options.session.pose_source)) {
     context.note("note: the poses come from a file, --refine-board changes nothing");
     return std::nullopt;
   }
@@ -123,7 +120,8 @@ core::Mesh read_patch_mesh(const capture::Session& session, const ReplayOptions&
 
 void run_replay(const ReplayOptions& options, const CommandContext& context) {
   // Open everything that may be wrong before the long work.
-  for (const auto& path : {options.output, options.mean_output, options.poses_output}) {
+  for (const auto& path :
+       {options.output, options.mean_output, options.poses_output, context.report_path}) {
     if (!path.empty()) core::check_writable(path);
   }
   const capture::Session session = capture::open_session(options.session.folder);

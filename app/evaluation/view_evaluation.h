@@ -19,7 +19,7 @@ struct ViewError {
   std::size_t covered_pixels = 0;  ///< of error.pixels, drawn from patches seen in the fit
 };
 
-/// Figures over all views of an evaluation (contract, section 5).
+/// Figures over all views of an evaluation (docs/conventions.md, "image error").
 struct EvaluationSummary {
   core::ImageError mean;    ///< means over views; pixels is the sum
   core::ImageError median;  ///< medians over views

@@ -31,7 +31,7 @@ struct ReplayReport {
   nlohmann::ordered_json options;
 };
 
-/// The document of contract section 5; `mean_colour` holds the baseline's held-out figures.
+/// The report as JSON; `held_out_mean_colour` holds the baseline's held-out figures.
 nlohmann::ordered_json to_json(const ReplayReport& report);
 
 /// The same for people: a short table.

@@ -16,14 +16,16 @@ constexpr float kSmallestObject_m = 0.001f;
 
 }  // namespace
 
+bool takes_poses_from_file(const capture::Session& session, PoseSource source) {
+  return source == PoseSource::file || (source == PoseSource::automatic && session.poses);
+}
+
 std::unique_ptr<capture::PoseEstimator> make_pose_estimator(const capture::Session& session,
                                                             PoseSource source,
                                                             const capture::PoseGate& gate,
                                                             const capture::Board* board) {
   const auto session_file = session.folder / "session.json";
-  const bool from_file =
-      source == PoseSource::file || (source == PoseSource::automatic && session.poses);
-  if (from_file) {
+  if (takes_poses_from_file(session, source)) {
     if (!session.poses) {
       throw core::bad_input(session_file, "has no poses",
                             "name a poses.txt under \"poses\" or take the poses from the tags");

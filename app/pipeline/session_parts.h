@@ -12,6 +12,9 @@ namespace sheen::app {
 /// Where poses come from: `automatic` takes poses.txt when the session has one, else the tags.
 enum class PoseSource { automatic, tags, file };
 
+/// Whether `source` means the session's poses.txt and not its tags.
+bool takes_poses_from_file(const capture::Session& session, PoseSource source);
+
 /// Throws core::Error (bad_input) when the session lacks what `source` asks for. `board` replaces
 /// the session's own when it is not null.
 std::unique_ptr<capture::PoseEstimator> make_pose_estimator(const capture::Session& session,
