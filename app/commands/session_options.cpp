@@ -2,6 +2,9 @@
 #include "app/commands/session_options.h"
 
 #include "app/interrupt.h"
+#include "core/diagnostics/error.h"
+
+#include <fmt/format.h>
 
 #include <map>
 
@@ -49,6 +52,10 @@ std::vector<PosedFrame> pose_frames(const capture::Session& session, const Sessi
     if (const auto* pose = std::get_if<capture::FramePose>(&result)) {
       posed.push_back({frame->index, frame->time_s, pose->camera_from_stage});
     }
+  }
+  if (posed.empty()) {
+    throw core::bad_input(options.folder, fmt::format("none of {} frames got a pose", frames_read),
+                          "sheen replay tells why frames are refused");
   }
   return posed;
 }

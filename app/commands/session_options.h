@@ -24,7 +24,7 @@ struct SessionOptions {
 
 void add_session_options(CLI::App& command, SessionOptions& options);
 
-/// Poses every chosen frame, without fitting.
+/// Poses every chosen frame, without fitting. Throws core::Error (bad_input) when none gets a pose.
 std::vector<PosedFrame> pose_frames(const capture::Session& session, const SessionOptions& options,
                                     const std::function<void(int frames_read)>& on_frame);
 

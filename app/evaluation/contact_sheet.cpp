@@ -26,8 +26,8 @@ cv::Rect crop_around(const cv::Mat& mask) {
   double height = std::max<double>(box.height, box.width / aspect) * 1.12;
   height = std::min({height, static_cast<double>(mask.rows), mask.cols / aspect});
   const double width = height * aspect;
-  const double x = std::clamp(centre.x - width / 2, 0.0, mask.cols - width);
-  const double y = std::clamp(centre.y - height / 2, 0.0, mask.rows - height);
+  const double x = std::clamp(centre.x - width / 2, 0.0, std::max(0.0, mask.cols - width));
+  const double y = std::clamp(centre.y - height / 2, 0.0, std::max(0.0, mask.rows - height));
   return cv::Rect(static_cast<int>(x), static_cast<int>(y), static_cast<int>(width),
                   static_cast<int>(height)) &
          cv::Rect(0, 0, mask.cols, mask.rows);
