@@ -10,6 +10,7 @@ struct Frame {
   cv::Mat image;      ///< CV_8UC3, BGR, distorted as the lens made it
   double time_s = 0;  ///< since the first frame
   int index = 0;      ///< position in the recording, counted from 0
+  cv::Mat grey{};     ///< CV_8UC1, luma where the source gives it for free; empty otherwise
 };
 
 }  // namespace sheen::capture
