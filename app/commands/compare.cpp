@@ -44,8 +44,8 @@ class Steps {
 
 Observations observe(const SessionOptions& options, const std::string& name, int threads,
                      Steps& steps) {
-  auto observations = observe_session(options, threads, [&](const FrameReport& frame) {
-    steps.doing(fmt::format("{}: frame {}", name, frame.frames_read));
+  auto observations = observe_session(options, threads, [&](int frames_read) {
+    steps.doing(fmt::format("{}: frame {}", name, frames_read));
   });
   steps.done(fmt::format("{}: {} frames observed", name, observations.views.size()));
   return observations;

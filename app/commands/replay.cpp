@@ -5,8 +5,10 @@
 #include "app/evaluation/evaluate_views.h"
 #include "app/evaluation/posed_views.h"
 #include "app/pipeline/check_seen.h"
+#include "app/pipeline/model_stage.h"
 #include "app/pipeline/patch_mesh.h"
 #include "app/pipeline/pipeline.h"
+#include "app/pipeline/pose_stage.h"
 #include "app/pipeline/replay_report.h"
 #include "app/pipeline/session_board.h"
 #include "capture/pose/trajectory.h"
@@ -48,11 +50,12 @@ struct LightFields {
   }
 };
 
-void run_producer(Producer& producer, std::optional<int> frame_count,
-                  const CommandContext& context) {
+core::StageTimer fit_frames(PoseStage& poses, ModelStage& stage, std::optional<int> frame_count,
+                            const CommandContext& context) {
   Progress progress = context.progress("fitting", frame_count.value_or(0));
-  run_pipeline(producer, context.threads > 1, [&](const FrameReport& report) {
-    progress.show(report.frames_read, fmt::format("{} posed", report.frames_posed));
+  const FrameStatistics& frames = stage.statistics();
+  return run_pipeline(poses, stage, context.threads > 1, [&](const TrackedFrame&) {
+    progress.show(frames.frames_read, fmt::format("{} posed", frames.posed.size()));
   });
 }
 
@@ -80,12 +83,12 @@ std::vector<EvaluationSummary> evaluate_held_out(const capture::Session& session
 }
 
 /// Poses of the held-out frames, refined against the finished model.
-std::vector<PosedFrame> refine_held_out(const capture::Session& session, Producer& producer) {
-  const std::vector<PosedFrame>& held_out = producer.statistics().held_out;
+std::vector<PosedFrame> refine_held_out(const capture::Session& session, ModelStage& stage) {
+  const std::vector<PosedFrame>& held_out = stage.statistics().held_out;
   std::vector<PosedFrame> refined;
   refined.reserve(held_out.size());
   for_each_view(session, held_out, [&](const capture::Frame& frame, const Eigen::Isometry3d&) {
-    refined.push_back(producer.refined(frame, held_out[refined.size()]));
+    refined.push_back(stage.refined(frame, held_out[refined.size()]));
   });
   return refined;
 }
@@ -118,6 +121,66 @@ core::Mesh read_patch_mesh(const capture::Session& session, const ReplayOptions&
   return texel_mesh(mesh, *footprint_m, options.texel_px);
 }
 
+/// Finds hidden vertices the way that was asked for; owns what that way needs.
+struct ChosenVisibility {
+  std::unique_ptr<render::Context> gl;
+  std::unique_ptr<core::Visibility> method;
+
+  ChosenVisibility(VisibilityMethod choice, const core::Mesh& mesh, int threads) {
+    if (choice == VisibilityMethod::depth) {
+      gl = render::make_osmesa_context();
+      method = render::make_depth_visibility(*gl, mesh);
+    } else {
+      method = core::make_ray_visibility(mesh, threads);
+    }
+  }
+};
+
+void save(const ReplayOptions& options, const core::Mesh& mesh, const LightFields& fields,
+          const std::vector<PosedFrame>& posed) {
+  fitting::write_model(options.output, mesh, fields.fitted->light_field());
+  if (!options.mean_output.empty()) {
+    fitting::write_model(options.mean_output, mesh, fields.mean_colours());
+  }
+  if (!options.poses_output.empty()) write_poses(options.poses_output, posed);
+}
+
+ReplayReport describe(const ReplayOptions& options, const LightFields& fields,
+                      const FrameStatistics& frames, const core::StageTimer& timer) {
+  const fitting::LightField& light_field = fields.fitted->light_field();
+  const auto& observed = light_field.observed();
+  return {.frames = frames,
+          .timer = timer,
+          .fit = fields.fitted->statistics(),
+          .representation = options.registered_name(),
+          .patches = light_field.patch_count(),
+          .patches_observed = static_cast<std::size_t>(
+              std::count(observed.begin(), observed.end(), std::uint8_t{1})),
+          .coefficients = light_field.coefficient_count(),
+          .model_bytes = std::filesystem::file_size(options.output),
+          .board = {},
+          .held_out = {},
+          .held_out_mean = {},
+          .held_out_refined_poses = {},
+          .options = to_json(options)};
+}
+
+/// Measures on the views that the fit has not seen.
+void add_held_out(const ReplayOptions& options, const capture::Session& session,
+                  const core::Mesh& mesh, const LightFields& fields, ModelStage& stage,
+                  const CommandContext& context, ReplayReport& report) {
+  const std::vector<PosedFrame>& held_out = stage.statistics().held_out;
+  if (held_out.empty()) return;
+  auto summaries = evaluate_held_out(session, mesh, fields, held_out, context);
+  report.held_out = std::move(summaries[0]);
+  report.held_out_mean = std::move(summaries[1]);
+  if (options.photometric.refine_poses) {
+    const auto refined = refine_held_out(session, stage);
+    report.held_out_refined_poses =
+        std::move(evaluate_held_out(session, mesh, fields, refined, context)[0]);
+  }
+}
+
 void run_replay(const ReplayOptions& options, const CommandContext& context) {
   // Open everything that may be wrong before the long work.
   for (const auto& path :
@@ -131,69 +194,32 @@ void run_replay(const ReplayOptions& options, const CommandContext& context) {
   const core::Mesh mesh = read_patch_mesh(session, options, board);
   auto frames = capture::open_frames(session, options.session.start, options.session.end);
   const std::optional<int> frame_count = frames->frame_count();
-  std::unique_ptr<render::Context> gl;
-  std::unique_ptr<core::Visibility> visibility;
-  if (options.visibility == VisibilityMethod::depth) {
-    gl = render::make_osmesa_context();
-    visibility = render::make_depth_visibility(*gl, mesh);
-  } else {
-    visibility = core::make_ray_visibility(mesh, context.threads);
-  }
+  ChosenVisibility visibility(options.visibility, mesh, context.threads);
 
   // Fit frame by frame.
   LightFields fields(options, mesh, context.threads);
-  Producer producer({.frames = std::move(frames),
-                     .poses = make_pose_estimator(session, options.session.pose_source,
-                                                  options.session.gate, board),
-                     .visibility = std::move(visibility),
-                     .mesh = mesh,
-                     .camera = session.camera,
-                     .stage_from_object = session.stage_from_object,
-                     .limits = options.limits,
-                     .representation = *fields.fitted,
-                     .baseline = fields.mean.get(),
-                     .hold_out = {options.session.hold_out},
-                     .photometric = options.photometric,
-                     .threads = context.threads});
-  run_producer(producer, frame_count, context);
-  const ProducerStatistics& statistics = producer.statistics();
-  check_something_was_seen(session, statistics, fields.fitted->statistics().samples);
+  SharedModel model(*fields.fitted);
+  PoseStage poses(std::move(frames), make_pose_estimator(session, options.session.pose_source,
+                                                         options.session.gate, board));
+  ModelStage stage({.visibility = std::move(visibility.method),
+                    .mesh = mesh,
+                    .camera = session.camera,
+                    .stage_from_object = session.stage_from_object,
+                    .limits = options.limits,
+                    .model = model,
+                    .baseline = fields.mean.get(),
+                    .hold_out = {options.session.hold_out},
+                    .photometric = options.photometric,
+                    .threads = context.threads});
+  const core::StageTimer timer = fit_frames(poses, stage, frame_count, context);
+  check_something_was_seen(session, stage.statistics(), fields.fitted->statistics().samples);
   fields.finish();
 
-  // Save.
-  const fitting::LightField& light_field = fields.fitted->light_field();
-  fitting::write_model(options.output, mesh, light_field);
-  if (!options.mean_output.empty()) {
-    fitting::write_model(options.mean_output, mesh, fields.mean_colours());
-  }
-  if (!options.poses_output.empty()) write_poses(options.poses_output, statistics.posed);
-
-  // Measure and report.
-  const auto& observed = light_field.observed();
-  ReplayReport report{.frames = statistics,
-                      .timer = producer.timer(),
-                      .fit = fields.fitted->statistics(),
-                      .representation = options.registered_name(),
-                      .patches = light_field.patch_count(),
-                      .patches_observed = static_cast<std::size_t>(
-                          std::count(observed.begin(), observed.end(), std::uint8_t{1})),
-                      .coefficients = light_field.coefficient_count(),
-                      .model_bytes = std::filesystem::file_size(options.output),
-                      .board = refinement,
-                      .held_out = {},
-                      .held_out_mean = {},
-                      .held_out_refined_poses = {},
-                      .options = to_json(options)};
-  if (!statistics.held_out.empty()) {
-    auto summaries = evaluate_held_out(session, mesh, fields, statistics.held_out, context);
-    report.held_out = std::move(summaries[0]);
-    report.held_out_mean = std::move(summaries[1]);
-    if (options.photometric.refine_poses) {
-      const auto refined = refine_held_out(session, producer);
-      report.held_out_refined_poses =
-          std::move(evaluate_held_out(session, mesh, fields, refined, context)[0]);
-    }
-  }
+  // Save, measure and report.
+  save(options, mesh, fields, stage.statistics().posed);
+  ReplayReport report = describe(options, fields, stage.statistics(), timer);
+  report.board = refinement;
+  add_held_out(options, session, mesh, fields, stage, context, report);
   context.publish(to_json(report), to_text(report) + "written  " + options.output.string() + "\n");
 }
 

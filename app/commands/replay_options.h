@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/commands/session_options.h"
+#include "app/pipeline/photometric_aligner.h"
 #include "core/samples/vertex_view.h"
 #include "fitting/iwls/options.h"
 #include "fitting/sparse/options.h"

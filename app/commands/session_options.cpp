@@ -2,6 +2,7 @@
 #include "app/commands/session_options.h"
 
 #include "app/interrupt.h"
+#include "app/pipeline/hold_out.h"
 #include "core/diagnostics/error.h"
 
 #include <fmt/format.h>

@@ -3,15 +3,13 @@
 
 #include "app/evaluation/evaluate_views.h"
 #include "app/interrupt.h"
+#include "core/diagnostics/cpu_clock.h"
 #include "core/diagnostics/stage_timer.h"
 #include "fitting/model_file/model_file.h"
 #include "render/surface/surface_renderer.h"
 
 namespace sheen::app {
 namespace {
-
-constexpr const char* kAbsorb = "absorb";
-constexpr const char* kFinish = "finish";
 
 /// Counts the CPU time of every picture a renderer draws.
 class TimedRenderer final : public render::SurfaceRenderer {
@@ -23,33 +21,28 @@ class TimedRenderer final : public render::SurfaceRenderer {
 
   render::RenderedView render(const core::CameraModel& camera,
                               const Eigen::Isometry3d& camera_from_object) override {
-    const auto timing = timer_.measure_frame();
-    return inner_->render(camera, camera_from_object);
+    const double begin_cpu_ms = core::process_cpu_ms();
+    render::RenderedView view = inner_->render(camera, camera_from_object);
+    cpu_ms_.push_back(core::process_cpu_ms() - begin_cpu_ms);
+    return view;
   }
 
-  [[nodiscard]] core::StageSummary cpu_ms() const { return timer_.frame_cpu(); }
+  [[nodiscard]] core::StageSummary cpu_ms() const { return core::summarise(cpu_ms_); }
 
  private:
   std::unique_ptr<render::SurfaceRenderer> inner_;
-  core::StageTimer timer_;
+  std::vector<double> cpu_ms_;
 };
 
 /// Returns the CPU time of the whole fit, ms.
 double fit(fitting::Representation& representation, const std::vector<core::SampleBatch>& views) {
-  core::StageTimer timer;
+  const double begin_cpu_ms = core::process_cpu_ms();
   for (const core::SampleBatch& view : views) {
     throw_if_interrupted();
-    const auto frame = timer.measure_frame();
-    const auto timing = timer.measure(kAbsorb);
     representation.absorb(view);
   }
-  {
-    const auto frame = timer.measure_frame();
-    const auto timing = timer.measure(kFinish);
-    representation.finish();
-  }
-  return timer.summary(kAbsorb).mean * static_cast<double>(views.size()) +
-         timer.summary(kFinish).mean;
+  representation.finish();
+  return core::process_cpu_ms() - begin_cpu_ms;
 }
 
 std::uintmax_t bytes_of(const core::Mesh& mesh, const fitting::LightField& light_field,

@@ -12,7 +12,7 @@
 namespace sheen::app {
 namespace {
 
-/// Keeps every batch that passes through to a plain representation, so that the producer of
+/// Keeps every batch that passes through to a plain representation, so that the pipeline of
 /// `sheen replay` makes the observations here, too.
 class SampleRecorder final : public fitting::Representation {
  public:
@@ -54,7 +54,7 @@ void check_views_are_held_out(const Observations& observations) {
 }  // namespace
 
 Observations observe_session(const SessionOptions& options, int threads,
-                             const std::function<void(const FrameReport&)>& on_frame) {
+                             const std::function<void(int frames_read)>& on_frame) {
   // Open what may be wrong.
   Observations observations;
   observations.session = capture::open_session(options.folder);
@@ -66,19 +66,21 @@ Observations observe_session(const SessionOptions& options, int threads,
   // Pose, see and sample.
   const capture::Session& session = observations.session;
   SampleRecorder recorder(observations.neighbours);
-  Producer producer({.frames = capture::open_frames(session, options.start, options.end),
-                     .poses = make_pose_estimator(session, options.pose_source, options.gate),
-                     .visibility = core::make_ray_visibility(observations.mesh, threads),
-                     .mesh = observations.mesh,
-                     .camera = session.camera,
-                     .stage_from_object = session.stage_from_object,
-                     .limits = {},
-                     .representation = recorder,
-                     .baseline = nullptr,
-                     .hold_out = {observations.has_own_held_out ? 0 : options.hold_out},
-                     .threads = threads});
-  run_pipeline(producer, threads > 1, on_frame);
-  check_something_was_seen(session, producer.statistics(), recorder.statistics().samples);
+  PoseStage poses(capture::open_frames(session, options.start, options.end),
+                  make_pose_estimator(session, options.pose_source, options.gate));
+  SharedModel model(recorder);
+  ModelStage stage({.visibility = core::make_ray_visibility(observations.mesh, threads),
+                    .mesh = observations.mesh,
+                    .camera = session.camera,
+                    .stage_from_object = session.stage_from_object,
+                    .limits = {},
+                    .model = model,
+                    .baseline = nullptr,
+                    .hold_out = {observations.has_own_held_out ? 0 : options.hold_out},
+                    .threads = threads});
+  run_pipeline(poses, stage, threads > 1,
+               [&](const TrackedFrame&) { on_frame(stage.statistics().frames_read); });
+  check_something_was_seen(session, stage.statistics(), recorder.statistics().samples);
   observations.views = recorder.take_batches();
 
   // Set the views aside on which candidates are measured.
@@ -86,7 +88,7 @@ Observations observe_session(const SessionOptions& options, int threads,
     hold_out_own_views(own_views, observations);
   } else {
     observations.held_out_session = session;
-    observations.held_out = producer.statistics().held_out;
+    observations.held_out = stage.statistics().held_out;
   }
   check_views_are_held_out(observations);
   return observations;

@@ -26,6 +26,6 @@ struct Observations {
 /// every frame read. Throws core::Error (bad_input) when no frame is posed, the object is not seen
 /// or no view is left to measure on.
 Observations observe_session(const SessionOptions& options, int threads,
-                             const std::function<void(const FrameReport&)>& on_frame);
+                             const std::function<void(int frames_read)>& on_frame);
 
 }  // namespace sheen::app

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/evaluation/view_evaluation.h"
-#include "app/pipeline/producer.h"
+#include "app/pipeline/frame_statistics.h"
 #include "capture/session/session.h"
 #include "render/surface/surface_renderer.h"
 

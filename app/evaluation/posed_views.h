@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "app/pipeline/producer.h"
+#include "app/pipeline/frame_statistics.h"
 #include "capture/session/session.h"
 
 #include <functional>

@@ -7,7 +7,7 @@
 
 namespace sheen::app {
 
-void check_something_was_seen(const capture::Session& session, const ProducerStatistics& frames,
+void check_something_was_seen(const capture::Session& session, const FrameStatistics& frames,
                               std::size_t samples) {
   if (frames.posed.empty()) {
     std::string reasons;

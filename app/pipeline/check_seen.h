@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "app/pipeline/producer.h"
+#include "app/pipeline/frame_statistics.h"
 #include "capture/session/session.h"
 
 namespace sheen::app {
 
 /// A model of nothing helps nobody: throws core::Error (bad_input) with the reasons when no frame
 /// was posed or no patch was seen.
-void check_something_was_seen(const capture::Session& session, const ProducerStatistics& frames,
+void check_something_was_seen(const capture::Session& session, const FrameStatistics& frames,
                               std::size_t samples);
 
 }  // namespace sheen::app

@@ -10,49 +10,62 @@
 namespace sheen::app {
 namespace {
 
-constexpr std::size_t kQueuedReports = 4;
+constexpr std::size_t kQueuedFrames = 3;  // evens out slow frames; each holds a picture
 
-void run_sequentially(Producer& producer, const std::function<void(const FrameReport&)>& on_frame) {
-  while (const auto report = producer.step()) {
-    throw_if_interrupted();
-    on_frame(*report);
+/// Poses frames on a thread of its own, a few ahead of whoever takes them.
+class PoseThread {
+ public:
+  explicit PoseThread(PoseStage& stage) : frames_(kQueuedFrames), thread_([&] { run(stage); }) {}
+  ~PoseThread() { frames_.close(); }  // or the thread would wait for a reader that has left
+  PoseThread(const PoseThread&) = delete;
+  PoseThread& operator=(const PoseThread&) = delete;
+  PoseThread(PoseThread&&) = delete;
+  PoseThread& operator=(PoseThread&&) = delete;
+
+  std::optional<TrackedFrame> next() {
+    auto tracked = frames_.pop();
+    if (!tracked && failure_) std::rethrow_exception(failure_);
+    return tracked;
   }
-}
 
-void run_on_own_thread(Producer& producer,
-                       const std::function<void(const FrameReport&)>& on_frame) {
-  core::BoundedQueue<FrameReport> reports(kQueuedReports);
-  std::exception_ptr failure;
-  std::jthread thread([&] {
+ private:
+  void run(PoseStage& stage) {
     try {
-      while (auto report = producer.step()) {
-        throw_if_interrupted();
-        if (!reports.push(std::move(*report))) break;
+      while (auto tracked = stage.next()) {
+        if (!frames_.push(std::move(*tracked))) break;
       }
     } catch (...) {
-      failure = std::current_exception();
+      failure_ = std::current_exception();  // read after the queue is closed
     }
-    reports.close();
-  });
-  try {
-    while (const auto report = reports.pop()) on_frame(*report);
-  } catch (...) {
-    reports.close();  // or the producer would wait for a reader that has left
-    throw;
+    frames_.close();
   }
-  thread.join();
-  if (failure) std::rethrow_exception(failure);
+
+  core::BoundedQueue<TrackedFrame> frames_;
+  std::exception_ptr failure_;
+  std::jthread thread_;
+};
+
+template <typename Next>
+core::StageTimer fit_all(const Next& next, ModelStage& model,
+                         const std::function<void(const TrackedFrame&)>& on_frame) {
+  core::StageTimer timer;
+  timer.start();
+  while (auto tracked = next()) {
+    throw_if_interrupted();
+    model.absorb(*tracked);
+    timer.end_frame(tracked->times);
+    on_frame(*tracked);
+  }
+  return timer;
 }
 
 }  // namespace
 
-void run_pipeline(Producer& producer, bool threaded,
-                  const std::function<void(const FrameReport&)>& on_frame) {
-  if (threaded) {
-    run_on_own_thread(producer, on_frame);
-  } else {
-    run_sequentially(producer, on_frame);
-  }
+core::StageTimer run_pipeline(PoseStage& poses, ModelStage& model, bool overlap,
+                              const std::function<void(const TrackedFrame&)>& on_frame) {
+  if (!overlap) return fit_all([&] { return poses.next(); }, model, on_frame);
+  PoseThread ahead(poses);
+  return fit_all([&] { return ahead.next(); }, model, on_frame);
 }
 
 }  // namespace sheen::app

@@ -32,7 +32,7 @@ double fits_per_patch_per_view(const fitting::FitStatistics& fit) {
              : static_cast<double>(fit.fits) / static_cast<double>(fit.patch_views);
 }
 
-int rejected(const ProducerStatistics& frames) {
+int rejected(const FrameStatistics& frames) {
   int sum = 0;
   for (const auto& [reason, count] : frames.pose_rejections) sum += count;
   return sum;
@@ -76,7 +76,7 @@ std::string held_out_row(const std::string& name, const EvaluationSummary& summa
                      summary.mean.ssim, summary.mean.rmse);
 }
 
-std::string frames_text(const ProducerStatistics& frames) {
+std::string frames_text(const FrameStatistics& frames) {
   std::string text = fmt::format(
       "frames   {} read, {} posed, {} rejected, {} fitted, {} held out\n", frames.frames_read,
       frames.posed.size(), rejected(frames), frames.frames_fitted, frames.held_out.size());
@@ -102,7 +102,7 @@ std::string timing_text(const core::StageTimer& timer) {
 }  // namespace
 
 nlohmann::ordered_json to_json(const ReplayReport& report) {
-  const ProducerStatistics& frames = report.frames;
+  const FrameStatistics& frames = report.frames;
   nlohmann::ordered_json stages;
   for (const char* stage : kStages) stages[stage] = to_json(report.timer.summary(stage));
   stages["align"] = to_json(report.timer.summary("align"));

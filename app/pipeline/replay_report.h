@@ -2,8 +2,9 @@
 #pragma once
 
 #include "app/evaluation/view_evaluation.h"
-#include "app/pipeline/producer.h"
+#include "app/pipeline/frame_statistics.h"
 #include "capture/pose/board_refinement.h"
+#include "core/diagnostics/stage_timer.h"
 
 #include <nlohmann/json.hpp>
 
@@ -15,7 +16,7 @@ namespace sheen::app {
 
 /// Everything a replay has to say at its end.
 struct ReplayReport {
-  const ProducerStatistics& frames;
+  const FrameStatistics& frames;
   const core::StageTimer& timer;
   fitting::FitStatistics fit;
   std::string representation;

@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "core/diagnostics/stage_timer.h"
 
-#include <time.h>
+#include "core/diagnostics/cpu_clock.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 namespace sheen::core {
-namespace {
-
-double process_cpu_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
-}
-
-}  // namespace
 
 StageSummary summarise(std::vector<double> values) {
   if (values.empty()) return {};
@@ -29,33 +20,31 @@ StageSummary summarise(std::vector<double> values) {
           .p95 = values[rank - 1]};
 }
 
-StageTimer::StageScope::StageScope(StageTimer& timer, std::string_view stage)
-    : timer_(timer), stage_(stage), begin_cpu_ms_(process_cpu_ms()) {}
+StageTimes::Scope::Scope(StageTimes& times, std::string_view stage)
+    : times_(times), stage_(stage), begin_cpu_ms_(own_cpu_ms()) {}
 
-StageTimer::StageScope::~StageScope() {
-  timer_.open_ms_[stage_] += process_cpu_ms() - begin_cpu_ms_;
+StageTimes::Scope::~Scope() {
+  times_.ms_[stage_] += own_cpu_ms() - begin_cpu_ms_;
 }
 
-StageTimer::FrameScope::FrameScope(StageTimer& timer)
-    : timer_(timer), begin_cpu_ms_(process_cpu_ms()) {
-  if (timer_.frame_cpu_ms_.empty()) timer_.last_frame_end_ = Clock::now();
+void StageTimer::start() {
+  last_end_cpu_ms_ = process_cpu_ms();
+  last_end_ = Clock::now();
 }
 
-StageTimer::FrameScope::~FrameScope() {
-  if (keep_) {
-    const Clock::time_point now = Clock::now();
-    const std::chrono::duration<double, std::milli> wall = now - timer_.last_frame_end_;
-    timer_.last_frame_end_ = now;
-    timer_.frame_wall_ms_.push_back(wall.count());
-    timer_.frame_cpu_ms_.push_back(process_cpu_ms() - begin_cpu_ms_);
-    for (const auto& [stage, ms] : timer_.open_ms_) timer_.closed_ms_[stage].push_back(ms);
-  }
-  timer_.open_ms_.clear();
+void StageTimer::end_frame(const StageTimes& times) {
+  for (const auto& [stage, ms] : times.ms()) stage_ms_[stage].push_back(ms);
+  const double now_cpu_ms = process_cpu_ms();
+  frame_cpu_ms_.push_back(now_cpu_ms - last_end_cpu_ms_);
+  last_end_cpu_ms_ = now_cpu_ms;
+  const Clock::time_point now = Clock::now();
+  frame_wall_ms_.push_back(std::chrono::duration<double, std::milli>(now - last_end_).count());
+  last_end_ = now;
 }
 
 StageSummary StageTimer::summary(std::string_view stage) const {
-  const auto found = closed_ms_.find(stage);
-  return found == closed_ms_.end() ? StageSummary{} : summarise(found->second);
+  const auto found = stage_ms_.find(stage);
+  return found == stage_ms_.end() ? StageSummary{} : summarise(found->second);
 }
 
 }  // namespace sheen::core

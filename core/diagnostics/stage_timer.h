@@ -18,66 +18,61 @@ struct StageSummary {
 
 StageSummary summarise(std::vector<double> values);
 
-/// CPU time of named stages, frame by frame: the time of the whole process, worker threads
-/// included (CLOCK_PROCESS_CPUTIME_ID). Stages of one frame run one after the other, on one thread;
-/// a stage measured twice in a frame counts once with the sum.
-class StageTimer {
+/// CPU time of the stages that one frame went through (`own_cpu_ms`). Travels with the frame from
+/// thread to thread; one thread at a time.
+class StageTimes {
  public:
-  /// Runs until the end of its scope.
-  class [[nodiscard]] StageScope {
+  /// Runs until the end of its scope; a stage measured twice counts with the sum.
+  class [[nodiscard]] Scope {
    public:
-    StageScope(StageTimer& timer, std::string_view stage);
-    ~StageScope();
-    StageScope(const StageScope&) = delete;
-    StageScope& operator=(const StageScope&) = delete;
-    StageScope(StageScope&&) = delete;
-    StageScope& operator=(StageScope&&) = delete;
+    Scope(StageTimes& times, std::string_view stage);
+    ~Scope();
+    Scope(const Scope&) = delete;
+    Scope& operator=(const Scope&) = delete;
+    Scope(Scope&&) = delete;
+    Scope& operator=(Scope&&) = delete;
 
    private:
-    StageTimer& timer_;
+    StageTimes& times_;
     std::string stage_;
     double begin_cpu_ms_;
   };
 
-  /// Runs until the end of its scope and closes the frame there.
-  class [[nodiscard]] FrameScope {
-   public:
-    explicit FrameScope(StageTimer& timer);
-    ~FrameScope();
-    FrameScope(const FrameScope&) = delete;
-    FrameScope& operator=(const FrameScope&) = delete;
-    FrameScope(FrameScope&&) = delete;
-    FrameScope& operator=(FrameScope&&) = delete;
+  Scope measure(std::string_view stage) { return {*this, stage}; }
 
-    /// There was no frame after all (end of the recording): nothing measured in it is kept.
-    void discard() { keep_ = false; }
+  /// Milliseconds by stage.
+  [[nodiscard]] const std::map<std::string, double, std::less<>>& ms() const { return ms_; }
 
-   private:
-    StageTimer& timer_;
-    double begin_cpu_ms_;
-    bool keep_ = true;
-  };
+ private:
+  std::map<std::string, double, std::less<>> ms_;
+};
 
-  StageScope measure(std::string_view stage) { return StageScope(*this, stage); }
-  FrameScope measure_frame() { return FrameScope(*this); }
+/// The times of all frames of a recording. One thread at a time.
+class StageTimer {
+ public:
+  /// The first frame begins now.
+  void start();
+
+  /// A frame has gone through all its stages.
+  void end_frame(const StageTimes& times);
 
   [[nodiscard]] StageSummary summary(std::string_view stage) const;
 
-  /// CPU time of the process within the frames.
+  /// CPU time of the process from the end of one frame to the end of the next.
   [[nodiscard]] StageSummary frame_cpu() const { return summarise(frame_cpu_ms_); }
 
-  /// Wall time from the end of one frame to the end of the next, the first from its own beginning:
-  /// the inverse of the throughput, waiting for a slow reader included.
+  /// Wall time from the end of one frame to the end of the next: the inverse of the throughput,
+  /// waiting for a slow reader included.
   [[nodiscard]] StageSummary frame_wall() const { return summarise(frame_wall_ms_); }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  std::map<std::string, double, std::less<>> open_ms_;  ///< stages of the frame under way
-  std::map<std::string, std::vector<double>, std::less<>> closed_ms_;
+  std::map<std::string, std::vector<double>, std::less<>> stage_ms_;
   std::vector<double> frame_cpu_ms_;
   std::vector<double> frame_wall_ms_;
-  Clock::time_point last_frame_end_{};
+  double last_end_cpu_ms_ = 0;
+  Clock::time_point last_end_{};
 };
 
 }  // namespace sheen::core

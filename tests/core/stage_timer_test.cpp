@@ -1,23 +1,20 @@
 // SPDX-License-Identifier: MIT
 #include "core/diagnostics/stage_timer.h"
 
+#include "core/concurrency/parallel_for.h"
+#include "core/diagnostics/cpu_clock.h"
+
 #include <gtest/gtest.h>
-#include <time.h>
 
 #include <numeric>
+#include <thread>
 
 namespace sheen::core {
 namespace {
 
-double cpu_ms() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) * 1e3 + static_cast<double>(now.tv_nsec) * 1e-6;
-}
-
 void burn(double ms) {
-  const double end = cpu_ms() + ms;
-  while (cpu_ms() < end) {
+  const double end = process_cpu_ms() + ms;
+  while (process_cpu_ms() < end) {
   }
 }
 
@@ -36,16 +33,18 @@ TEST(Summarise, HasClosedForms) {
 
 TEST(StageTimer, MeasuresCpuPerFrame) {
   StageTimer timer;
+  timer.start();
   for (int frame = 0; frame < 3; ++frame) {
-    const auto frame_scope = timer.measure_frame();
+    StageTimes times;
     for (int part = 0; part < 2; ++part) {
-      const auto scope = timer.measure("fit");
+      const auto scope = times.measure("fit");
       burn(2);
     }
     if (frame == 1) {
-      const auto scope = timer.measure("rare");
+      const auto scope = times.measure("rare");
       burn(1);
     }
+    timer.end_frame(times);
   }
   // Two parts of at least 2 ms make one figure of at least 4 ms per frame.
   EXPECT_GE(timer.summary("fit").mean, 4);
@@ -60,17 +59,27 @@ TEST(StageTimer, MeasuresCpuPerFrame) {
   EXPECT_GE(timer.frame_wall().mean + 0.1, timer.frame_cpu().mean);
 }
 
-TEST(StageTimer, DiscardedFramesLeaveNoTrace) {
-  StageTimer timer;
+TEST(StageTimes, AnotherThreadsWorkCountsOnlyWhereItWasDoneForThisOne) {
+  // What a thread beside this one does is not of this stage: the thread burns 20 ms, the stage
+  // less.
+  StageTimes alone;
   {
-    auto frame = timer.measure_frame();
-    const auto scope = timer.measure("decode");
-    frame.discard();
+    const auto scope = alone.measure("wait");
+    std::jthread other([] { burn(20); });
   }
-  { const auto frame = timer.measure_frame(); }
-  // The stage scope above ends before its frame does, so nothing of it is left for the next one.
-  EXPECT_EQ(timer.summary("decode").p95, 0);
-  EXPECT_EQ(timer.frame_cpu().mean, timer.frame_cpu().p95);
+  EXPECT_LT(alone.ms().at("wait"), 20);
+  // Two parts of at least 5 ms of their own thread's time each are 10 ms of work, whoever does
+  // them.
+  StageTimes shared;
+  {
+    const auto scope = shared.measure("work");
+    parallel_for(512, 2, [](std::size_t, std::size_t) {
+      const double end = own_cpu_ms() + 5;
+      while (own_cpu_ms() < end) {
+      }
+    });
+  }
+  EXPECT_GE(shared.ms().at("work"), 10);
 }
 
 }  // namespace

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "core/samples/vertex_view.h"
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace sheen::app {
+
+/// A frame that got a pose.
+struct PosedFrame {
+  int index = 0;
+  double time_s = 0;
+  Eigen::Isometry3d camera_from_stage = Eigen::Isometry3d::Identity();
+};
+
+/// Everything that is counted while frames arrive.
+struct FrameStatistics {
+  int frames_read = 0;
+  int frames_fitted = 0;
+  std::vector<PosedFrame> posed;               ///< in recorded order, held-out ones included
+  std::vector<PosedFrame> held_out;            ///< posed, kept out of the fit
+  std::map<std::string, int> pose_rejections;  ///< by name of PoseRejection
+  std::array<std::size_t, core::kVertexRejectionCount> vertex_rejections{};
+  std::vector<double> reprojection_px;  ///< of frames posed from tags
+  std::vector<double> refined_px;       ///< mean motion of every frame whose pose was refined
+  std::vector<double> gains;            ///< exposure of every frame that told it
+};
+
+}  // namespace sheen::app

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "app/pipeline/frame_statistics.h"
+#include "app/pipeline/hold_out.h"
+#include "app/pipeline/photometric_aligner.h"
+#include "app/pipeline/pose_stage.h"
+#include "app/pipeline/shared_model.h"
+#include "core/mesh/mesh.h"
+#include "core/samples/sample_batch.h"
+#include "core/visibility/visibility.h"
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace sheen::app {
+
+/// Second stage: posed picture -> visibility -> samples -> fit. The only place that counts frames.
+class ModelStage {
+ public:
+  /// The doors between the rooms; mesh and light fields are borrowed.
+  struct Parts {
+    std::unique_ptr<core::Visibility> visibility;
+    const core::Mesh& mesh;
+    core::CameraModel camera;
+    Eigen::Isometry3d stage_from_object;
+    core::SamplingLimits limits;
+    SharedModel& model;
+    fitting::Representation* baseline;  ///< absorbs the same samples for comparison; may be null
+    HoldOut hold_out;
+    PhotometricOptions photometric = {};
+    int threads = 1;
+  };
+
+  explicit ModelStage(Parts parts);
+
+  /// Takes a frame into the model unless it has no pose or is held out.
+  void absorb(TrackedFrame& tracked);
+
+  /// A frame's pose refined against the light field as it is now, or as it was when that cannot be
+  /// said. Only with `refine_poses`; changes no statistics.
+  PosedFrame refined(const capture::Frame& frame, PosedFrame posed);
+
+  [[nodiscard]] const FrameStatistics& statistics() const { return statistics_; }
+
+ private:
+  std::optional<PosedFrame> count(const TrackedFrame& tracked);
+  void observe(const capture::Frame& frame, core::StageTimes& times, PosedFrame& posed);
+  void see(const Eigen::Isometry3d& camera_from_object);
+  std::optional<core::Alignment> align(const capture::Frame& frame, PosedFrame& posed);
+  void correct_exposure();
+
+  Parts parts_;
+  std::vector<core::TangentFrame> tangent_frames_;
+  core::VertexView view_;
+  core::SampleBatch batch_;
+  std::optional<PhotometricAligner> aligner_;  ///< where something is adjusted
+  FrameStatistics statistics_;
+};
+
+}  // namespace sheen::app

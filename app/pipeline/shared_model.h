@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "fitting/representation.h"
+
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+namespace sheen::app {
+
+/// The light field under construction, between the thread that fits it and those that look at it
+/// meanwhile. All members may be called from any thread.
+class SharedModel {
+ public:
+  /// The representation is borrowed.
+  explicit SharedModel(fitting::Representation& representation)
+      : representation_(representation),
+        is_changed_(representation.light_field().patch_count(), 0) {}
+
+  /// Runs `work(representation)` while nobody else has it.
+  template <typename Work>
+  decltype(auto) with(const Work& work) {
+    const std::lock_guard lock(mutex_);
+    return work(representation_);
+  }
+
+  void absorb(const core::SampleBatch& batch) {
+    const std::lock_guard lock(mutex_);
+    note(representation_.absorb(batch));
+  }
+
+  void finish() {
+    const std::lock_guard lock(mutex_);
+    note(representation_.finish());
+  }
+
+  /// What changed since the last call.
+  fitting::ModelUpdate take_changes();
+
+ private:
+  void note(const fitting::ModelUpdate& update) {
+    for (const std::uint32_t patch_idx : update.patches) is_changed_[patch_idx] = 1;
+  }
+
+  std::mutex mutex_;
+  fitting::Representation& representation_;
+  std::vector<std::uint8_t> is_changed_;
+};
+
+}  // namespace sheen::app
