@@ -1,22 +1,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "core/diagnostics/cpu_clock.h"
+#include "core/concurrency/worker_pool.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <exception>
 #include <mutex>
-#include <thread>
-#include <vector>
 
 namespace sheen::core {
 
-/// Calls `body(begin, end)` on disjoint ranges that cover [0, count), on up to `threads` threads,
-/// the calling one included; with one thread everything runs inline. The first exception of a
-/// body is rethrown here after all have ended. Bodies must write to disjoint places: then the
-/// result does not depend on `threads`. The CPU time of all threads counts as the caller's
-/// (`own_cpu_ms`).
+/// Calls `body(begin, end)` on disjoint ranges that cover [0, count), on up to `threads` threads of
+/// the shared WorkerPool, the calling one included; with one thread everything runs inline. The
+/// ranges follow from `count` and `threads` alone. The first exception of a body is rethrown here
+/// after all have ended. Bodies must write to disjoint places: then the result does not depend on
+/// `threads`. Bodies may call parallel_for themselves. The CPU time of all threads counts as the
+/// caller's (`own_cpu_ms`).
 template <typename Body>
 void parallel_for(std::size_t count, int threads, const Body& body) {
   constexpr std::size_t min_range = 256;  // below this a thread costs more than it saves
@@ -28,7 +27,6 @@ void parallel_for(std::size_t count, int threads, const Body& body) {
   }
   std::mutex mutex;
   std::exception_ptr failure;
-  std::vector<double> part_cpu_ms(parts);
   const auto run_part = [&](std::size_t part) {
     try {
       body(part * count / parts, (part + 1) * count / parts);
@@ -37,19 +35,10 @@ void parallel_for(std::size_t count, int threads, const Body& body) {
       if (!failure) failure = std::current_exception();
     }
   };
-  {
-    std::vector<std::jthread> workers;
-    workers.reserve(parts - 1);
-    for (std::size_t part = 1; part < parts; ++part) {
-      workers.emplace_back([&, part] {
-        const double begin_cpu_ms = own_cpu_ms();
-        run_part(part);
-        part_cpu_ms[part] = own_cpu_ms() - begin_cpu_ms;
-      });
-    }
-    run_part(0);
-  }
-  for (const double ms : part_cpu_ms) credit_cpu_ms(ms);
+  using RunPart = decltype(run_part);
+  WorkerPool::shared().run(
+      parts, [](const void* job, std::size_t part) { (*static_cast<const RunPart*>(job))(part); },
+      &run_part);
   if (failure) std::rethrow_exception(failure);
 }
 

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -41,6 +42,56 @@ TEST(ParallelFor, PassesExceptionsOn) {
                               }),
                  std::domain_error);
   }
+}
+
+/// Sum of 0 ... count - 1 by an inner loop on `threads` threads.
+std::size_t sum_below(std::size_t count, int threads) {
+  std::vector<std::size_t> values(count);
+  parallel_for(count, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) values[i] = i;
+  });
+  return std::accumulate(values.begin(), values.end(), std::size_t{0});
+}
+
+TEST(ParallelFor, MayBeNested) {
+  std::vector<std::size_t> sums(1024);
+  parallel_for(sums.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) sums[i] = sum_below(1000, 3);
+  });
+  // 0 + 1 + ... + 999 = 1000 * 999 / 2.
+  EXPECT_EQ(sums, std::vector<std::size_t>(1024, 499500));
+}
+
+TEST(ParallelFor, ServesSeveralCallersAtOnce) {
+  std::vector<std::size_t> wrong(4, 0);
+  {
+    std::vector<std::jthread> callers;
+    for (std::size_t caller = 0; caller < wrong.size(); ++caller) {
+      callers.emplace_back([&wrong, caller] {
+        for (int repeat = 0; repeat < 300; ++repeat) {
+          if (sum_below(1000, 2 + repeat % 3) != 499500) ++wrong[caller];
+        }
+      });
+    }
+  }
+  EXPECT_EQ(wrong, std::vector<std::size_t>(4, 0));
+}
+
+std::atomic<int> threads_met = 0;
+struct CountsItsThread {
+  CountsItsThread() { ++threads_met; }
+};
+
+TEST(ParallelFor, KeepsItsThreads) {
+  // An object of every thread that ever takes part: the caller and at most the seven workers that
+  // the largest call of this program (eight threads) has started.
+  for (int repeat = 0; repeat < 500; ++repeat) {
+    parallel_for(4096, 8, [](std::size_t, std::size_t) {
+      [[maybe_unused]] thread_local const CountsItsThread counted;
+    });
+  }
+  EXPECT_GE(threads_met, 1);
+  EXPECT_LE(threads_met, 8);
 }
 
 TEST(BoundedQueue, KeepsOrderAndLosesNothing) {
