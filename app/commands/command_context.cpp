@@ -30,6 +30,13 @@ void CommandContext::note(const std::string& line) const {
   if (!quiet) std::fprintf(stderr, "%s\n", line.c_str());
 }
 
+void CommandContext::check_outputs(const std::vector<std::filesystem::path>& outputs) const {
+  if (!report_path.empty()) core::check_writable(report_path);
+  for (const auto& path : outputs) {
+    if (!path.empty()) core::check_writable(path);
+  }
+}
+
 void CommandContext::publish(const nlohmann::ordered_json& document,
                              const std::string& text) const {
   // Paths may hold bytes that are no UTF-8; they must not cost the whole report.

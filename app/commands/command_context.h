@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <vector>
 
 namespace sheen::app {
 
@@ -24,6 +25,10 @@ struct CommandContext {
 
   /// One line on stderr, unless --quiet.
   void note(const std::string& line) const;
+
+  /// Throws core::Error (bad_input) when the report or one of `outputs` (empty paths: not asked for)
+  /// cannot be written: before the long work, not after it.
+  void check_outputs(const std::vector<std::filesystem::path>& outputs) const;
 
   /// Ends a command: `document` to --report and, with --json, to stdout; else `text` to stdout.
   void publish(const nlohmann::ordered_json& document, const std::string& text) const;

@@ -121,6 +121,7 @@ void run_compare(const CompareOptions& options, const CommandContext& context) {
     compare_with_paper(options.output, context);
     return;
   }
+  context.check_outputs({});
   check_sessions(options.folders, context);
   const core::StagedOutput staging(options.output / "comparison");
   std::filesystem::create_directory(staging.path());

@@ -48,6 +48,7 @@ std::string to_text(const std::vector<std::string>& names,
 
 void run_evaluate(const EvaluateOptions& options, const CommandContext& context) {
   // Read the models and pose the views.
+  context.check_outputs({options.sheet});
   std::vector<fitting::Model> models;
   models.push_back(fitting::read_model(options.model));
   if (!options.beside.empty()) models.push_back(fitting::read_model(options.beside));

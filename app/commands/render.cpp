@@ -19,6 +19,7 @@ struct RenderOptions {
 };
 
 void run_render(const RenderOptions& options, const CommandContext& context) {
+  context.check_outputs({});
   const fitting::Model model = fitting::read_model(options.model);
   const capture::Session session = capture::open_session(options.session.folder);
   std::vector<PosedFrame> views;

@@ -13,7 +13,6 @@
 #include "app/pipeline/session_board.h"
 #include "capture/pose/trajectory.h"
 #include "core/diagnostics/error.h"
-#include "core/files/staged_output.h"
 #include "core/mesh/neighbours.h"
 #include "core/visibility/ray_visibility.h"
 #include "fitting/model_file/model_file.h"
@@ -183,10 +182,7 @@ void add_held_out(const ReplayOptions& options, const capture::Session& session,
 
 void run_replay(const ReplayOptions& options, const CommandContext& context) {
   // Open everything that may be wrong before the long work.
-  for (const auto& path :
-       {options.output, options.mean_output, options.poses_output, context.report_path}) {
-    if (!path.empty()) core::check_writable(path);
-  }
+  context.check_outputs({options.output, options.mean_output, options.poses_output});
   const capture::Session session = capture::open_session(options.session.folder);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
   const auto refinement = refine_board(session, options, context);

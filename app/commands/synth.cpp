@@ -53,6 +53,7 @@ void run_synth(SynthOptions& options, const CommandContext& context) {
     throw CLI::ValidationError(error.what());
   }
 
+  context.check_outputs({});
   Progress progress = context.progress("rendering", session.frames + session.held_out);
   synthetic::write_synthetic_session(options.folder, session, [&](int done, int) {
     throw_if_interrupted();

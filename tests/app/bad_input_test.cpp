@@ -164,6 +164,19 @@ TEST_F(BadInput, OutputFolderThatCannotBeMade) {
   expect_one_line(run, "model.glb");
 }
 
+TEST_F(BadInput, ReportThatCannotBeWrittenIsToldBeforeTheWork) {
+  // The model file is none: a command that reads it first would name that one.
+  const std::string report = session_ / "object.ply" / "report.json";
+  const std::string model = model_;
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"evaluate", model, session_},
+        {"render", model, "--views", session_, "-o", folder_.path() / "views"}}) {
+    auto arguments = command;
+    arguments.insert(arguments.end(), {"--report", report});
+    expect_one_line(run_sheen(arguments), "report.json");
+  }
+}
+
 TEST_F(BadInput, WrongArguments) {
   expect_one_line(run_sheen({"replay"}), "session");
   expect_one_line(run_sheen({"fly"}), "fly");
