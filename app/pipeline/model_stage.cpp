@@ -6,7 +6,7 @@
 namespace sheen::app {
 
 ModelStage::ModelStage(Parts parts)
-    : parts_(std::move(parts)), tangent_frames_(core::tangent_frames(parts_.mesh)) {
+    : parts_(std::move(parts)), points_(core::surface_points(parts_.mesh)) {
   if (parts_.photometric.refine_poses || parts_.photometric.exposure)
     aligner_.emplace(parts_.mesh, parts_.photometric.pose_error_px);
 }
@@ -66,8 +66,8 @@ void ModelStage::observe(const capture::Frame& frame, core::StageTimes& times, P
 }
 
 void ModelStage::see(const Eigen::Isometry3d& camera_from_object) {
-  core::project_vertices(parts_.mesh, tangent_frames_, parts_.camera, camera_from_object,
-                         parts_.limits, parts_.threads, view_);
+  core::project_vertices(points_, parts_.camera, camera_from_object, parts_.limits, parts_.threads,
+                         view_);
   parts_.visibility->reject_occluded(parts_.camera, camera_from_object, view_);
 }
 

@@ -52,7 +52,7 @@ class ModelStage {
   void correct_exposure();
 
   Parts parts_;
-  std::vector<core::TangentFrame> tangent_frames_;
+  core::SurfacePoints points_;
   core::VertexView view_;
   core::SampleBatch batch_;
   std::optional<PhotometricAligner> aligner_;  ///< where something is adjusted

@@ -2,7 +2,9 @@
 #include "core/samples/vertex_view.h"
 
 #include "core/concurrency/parallel_for.h"
+#include "core/samples/sampling_kernels.h"
 
+#include <algorithm>
 #include <cassert>
 
 namespace sheen::core {
@@ -15,20 +17,32 @@ void resize(VertexView& view, std::size_t count) {
   view.rejection.resize(count);
 }
 
-/// Where pixels may lie so that they keep their distance to the border.
-struct PixelRange {
-  double low;
-  double high_x;
-  double high_y;
-  // Written so that a pixel that is not a number is outside.
-  [[nodiscard]] bool holds(const Eigen::Vector2d& pixel) const {
-    return pixel.x() >= low && pixel.x() <= high_x && pixel.y() >= low && pixel.y() <= high_y;
+ProjectionSetup projection_setup(const CameraModel& camera,
+                                 const Eigen::Isometry3d& camera_from_object,
+                                 const SamplingLimits& limits) {
+  const CameraModel::Intrinsics& lens = camera.intrinsics();
+  const Eigen::Vector3f eye = eye_in_object(camera_from_object);
+  ProjectionSetup setup{};
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      setup.rotation[3 * row + column] =
+          static_cast<float>(camera_from_object.linear()(row, column));
+    }
+    setup.translation[row] = static_cast<float>(camera_from_object.translation()[row]);
+    setup.eye[row] = eye[row];
   }
-};
-
-VertexRejection rejection_by_cosine(float cosine, float min_cosine) {
-  if (!(cosine > 0.0f)) return VertexRejection::back_facing;
-  return cosine < min_cosine ? VertexRejection::grazing : VertexRejection::none;
+  for (int i = 0; i < 2; ++i) {
+    setup.focal_px[i] = static_cast<float>(lens.focal_px[i]);
+    setup.principal_px[i] = static_cast<float>(lens.principal_px[i]);
+  }
+  std::transform(lens.distortion.begin(), lens.distortion.end(), setup.distortion,
+                 [](double k) { return static_cast<float>(k); });
+  setup.valid_radius2 = static_cast<float>(camera.valid_radius() * camera.valid_radius());
+  setup.low_px = limits.border_margin_px;
+  setup.high_px[0] = static_cast<float>(camera.width_px() - 1) - limits.border_margin_px;
+  setup.high_px[1] = static_cast<float>(camera.height_px() - 1) - limits.border_margin_px;
+  setup.min_cosine = limits.min_cosine;
+  return setup;
 }
 
 }  // namespace
@@ -55,37 +69,19 @@ Eigen::Vector3f eye_in_object(const Eigen::Isometry3d& camera_from_object) {
       .cast<float>();
 }
 
-void project_vertices(const Mesh& mesh, const std::vector<TangentFrame>& frames,
-                      const CameraModel& camera, const Eigen::Isometry3d& camera_from_object,
-                      const SamplingLimits& limits, int threads, VertexView& view) {
-  assert(frames.size() == mesh.positions.size());
+void project_vertices(const SurfacePoints& points, const CameraModel& camera,
+                      const Eigen::Isometry3d& camera_from_object, const SamplingLimits& limits,
+                      int threads, VertexView& view) {
   assert(limits.border_margin_px >= 1.0f);
-  const auto margin = static_cast<double>(limits.border_margin_px);
-  const PixelRange range{margin, camera.width_px() - 1 - margin, camera.height_px() - 1 - margin};
-  const Eigen::Vector3f eye = eye_in_object(camera_from_object);
-  const Eigen::Matrix3d rotation = camera_from_object.linear();
-  const Eigen::Vector3d translation = camera_from_object.translation();
-  resize(view, mesh.positions.size());
-
-  parallel_for(mesh.positions.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      // Project.
-      const Eigen::Vector3d in_camera = rotation * mesh.positions[i].cast<double>() + translation;
-      const std::optional<Eigen::Vector2d> pixel = camera.project(in_camera);
-      if (!pixel || !range.holds(*pixel)) {
-        view.rejection[i] = VertexRejection::outside_image;
-        continue;
-      }
-      view.x_px[i] = static_cast<float>(pixel->x());
-      view.y_px[i] = static_cast<float>(pixel->y());
-      view.depth_m[i] = static_cast<float>(in_camera.z());
-
-      // Turn the view into the patch's own frame.
-      const DiscDirection direction = direction_towards(frames[i], mesh.positions[i], eye);
-      view.u[i] = direction.uv.x();
-      view.v[i] = direction.uv.y();
-      view.rejection[i] = rejection_by_cosine(direction.cosine, limits.min_cosine);
-    }
+  resize(view, points.size());
+  const ProjectionSetup setup = projection_setup(camera, camera_from_object, limits);
+  const ProjectionColumns columns{points.x.data(),  points.y.data(),  points.z.data(),
+                                  points.nx.data(), points.ny.data(), points.nz.data(),
+                                  view.x_px.data(), view.y_px.data(), view.depth_m.data(),
+                                  view.u.data(),    view.v.data(),    view.rejection.data()};
+  const SamplingKernels& kernels = sampling_kernel_sets().front();
+  parallel_for(points.size(), threads, [&](std::size_t begin, std::size_t end) {
+    kernels.project(setup, columns, begin, end);
   });
 }
 

@@ -4,6 +4,7 @@
 #include "core/geometry/camera.h"
 #include "core/geometry/tangent_frame.h"
 #include "core/mesh/mesh.h"
+#include "core/samples/surface_points.h"
 
 #include <Eigen/Geometry>
 
@@ -26,11 +27,13 @@ struct SamplingLimits {
                                   ///< counted from the centres of the outermost pixels
 };
 
-/// All vertices of a mesh seen by one camera. Structure of arrays, one entry per vertex; entries
-/// after a rejection are unspecified except `rejection`.
+/// All vertices of a mesh seen by one camera. Structure of arrays, one entry per vertex. Pixels
+/// hold wherever `depth_m` > 0, outside the picture too; directions where the vertex is not
+/// rejected.
 struct VertexView {
-  std::vector<float> x_px, y_px;  ///< pixel, OpenCV's convention
-  std::vector<float> depth_m;     ///< z in the camera frame
+  std::vector<float> x_px, y_px;  ///< pixel, OpenCV's convention, lens distortion included
+  std::vector<float> depth_m;     ///< z in the camera frame; 0 behind the camera and beyond the
+                                  ///< lens model
   std::vector<float> u, v;        ///< view direction on the patch's unit disc
   std::vector<VertexRejection> rejection;
 };
@@ -46,10 +49,11 @@ Eigen::Vector3f eye_in_object(const Eigen::Isometry3d& camera_from_object);
 /// Projects every vertex and applies the limits that need no other vertex (all but `occluded`). The
 /// first that fails is noted: behind the camera, beyond the lens model or outside the picture less
 /// its margin (outside_image), cosine <= 0 (back_facing), cosine < min_cosine (grazing). Reuses the
-/// storage of `view`. Independent of the number of threads.
-void project_vertices(const Mesh& mesh, const std::vector<TangentFrame>& frames,
-                      const CameraModel& camera, const Eigen::Isometry3d& camera_from_object,
-                      const SamplingLimits& limits, int threads, VertexView& view);
+/// storage of `view`. Single precision; the same bits on any number of threads and on every
+/// processor.
+void project_vertices(const SurfacePoints& points, const CameraModel& camera,
+                      const Eigen::Isometry3d& camera_from_object, const SamplingLimits& limits,
+                      int threads, VertexView& view);
 
 /// Counts of each VertexRejection, indexed by its value.
 std::array<std::size_t, kVertexRejectionCount> count_rejections(const VertexView& view);

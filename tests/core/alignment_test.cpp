@@ -216,8 +216,8 @@ TEST(SelectPoints, TakesTheStrongestGradientsAwayFromTheSilhouette) {
   std::vector<std::uint32_t> one_thread;
   std::vector<std::uint32_t> four_threads;
   for (const int threads : {1, 4}) {
-    project_vertices(scene.mesh, tangent_frames(scene.mesh), scene.camera, scene.camera_from_object,
-                     {}, threads, view);
+    project_vertices(surface_points(scene.mesh), scene.camera, scene.camera_from_object, {},
+                     threads, view);
     // Hide the corner x, y > 5 cm, as an occluder would.
     for (std::size_t i = 0; i < view.rejection.size(); ++i) {
       if (scene.mesh.positions[i].head<2>().minCoeff() > 0.05f) {
@@ -245,8 +245,7 @@ TEST(SelectPoints, TakesTheStrongestGradientsAwayFromTheSilhouette) {
 TEST(SelectPoints, TakesNothingUnusable) {
   const PlaneScene scene;
   VertexView view;
-  project_vertices(scene.mesh, tangent_frames(scene.mesh), scene.camera, scene.camera_from_object,
-                   {}, 1, view);
+  project_vertices(surface_points(scene.mesh), scene.camera, scene.camera_from_object, {}, 1, view);
   std::vector<std::uint32_t> selected{7};
   select_points(view, seamless_neighbours(scene.mesh),
                 std::vector<std::uint8_t>(scene.mesh.positions.size(), 0),

@@ -26,7 +26,7 @@ VertexRejection verdict(const Eigen::Vector3f& position, const Eigen::Vector3f& 
   mesh.normals.assign(3, normal.normalized());
   mesh.triangles = {{0, 1, 2}};
   VertexView view;
-  project_vertices(mesh, tangent_frames(mesh), kCamera, camera_above(1.0), {}, 1, view);
+  project_vertices(surface_points(mesh), kCamera, camera_above(1.0), {}, 1, view);
   return view.rejection[0];
 }
 
@@ -63,22 +63,22 @@ TEST(VertexView, VerticesWithoutTrianglesNeverBecomeSamples) {
   mesh.positions.emplace_back(0.0f, 0.0f, 0.0f);
   mesh.normals.emplace_back(0.0f, 0.0f, 1.0f);
   VertexView view;
-  project_vertices(mesh, tangent_frames(mesh), kCamera, camera_above(1.0), {}, 1, view);
+  project_vertices(surface_points(mesh), kCamera, camera_above(1.0), {}, 1, view);
   EXPECT_EQ(view.rejection.back(), VertexRejection::back_facing);
   EXPECT_EQ(count_rejections(view)[static_cast<std::size_t>(VertexRejection::none)], 25u);
 }
 
 TEST(VertexView, ThreadsDoNotMatterAndStorageIsReused) {
   const Mesh mesh = testing::sphere(60, 60);
-  const auto frames = tangent_frames(mesh);
+  const SurfacePoints points = surface_points(mesh);
   const CameraModel camera({640, 480, {500, 500}, {320, 240}, {-0.2, 0.05, 1e-3, 1e-3, 0.01}});
   VertexView expected;
-  project_vertices(mesh, frames, camera, camera_above(4.0), {}, 1, expected);
+  project_vertices(points, camera, camera_above(4.0), {}, 1, expected);
   VertexView view;
-  project_vertices(mesh, frames, camera, camera_above(4.0), {}, 1, view);
+  project_vertices(points, camera, camera_above(4.0), {}, 1, view);
   const float* storage = view.x_px.data();
   for (int threads = 1; threads <= 8; ++threads) {
-    project_vertices(mesh, frames, camera, camera_above(4.0), {}, threads, view);
+    project_vertices(points, camera, camera_above(4.0), {}, threads, view);
     EXPECT_EQ(view.rejection, expected.rejection);
     EXPECT_EQ(view.x_px, expected.x_px);
     EXPECT_EQ(view.y_px, expected.y_px);

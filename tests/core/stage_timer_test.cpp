@@ -13,8 +13,8 @@ namespace sheen::core {
 namespace {
 
 void burn(double ms) {
-  const double end = process_cpu_ms() + ms;
-  while (process_cpu_ms() < end) {
+  const double end = own_cpu_ms() + ms;
+  while (own_cpu_ms() < end) {
   }
 }
 

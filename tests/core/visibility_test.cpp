@@ -27,7 +27,7 @@ Eigen::Isometry3d camera_above(double height) {
 VertexView seen_from_above(const Mesh& mesh, double height, int threads = 1) {
   VertexView view;
   const Eigen::Isometry3d pose = camera_above(height);
-  project_vertices(mesh, tangent_frames(mesh), kCamera, pose, {}, threads, view);
+  project_vertices(surface_points(mesh), kCamera, pose, {}, threads, view);
   make_ray_visibility(mesh, threads)->reject_occluded(kCamera, pose, view);
   return view;
 }

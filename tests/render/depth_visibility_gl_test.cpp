@@ -34,14 +34,14 @@ Agreement compare(const core::Mesh& mesh, const core::CameraModel& camera, doubl
   const auto context = make_osmesa_context();
   const auto by_depth = make_depth_visibility(*context, mesh);
   const auto by_rays = core::make_ray_visibility(mesh, 1);
-  const auto frames = core::tangent_frames(mesh);
+  const core::SurfacePoints points = core::surface_points(mesh);
   Agreement result;
   for (const Eigen::Vector3d& side :
        {Eigen::Vector3d(1, 0.1, 0.2), Eigen::Vector3d(-0.4, 1, 0.7), Eigen::Vector3d(0.3, -0.8, 1),
         Eigen::Vector3d(-1, -0.5, -0.3)}) {
     const Eigen::Isometry3d pose = testing::looking_at_origin(side, distance_m);
     core::VertexView depth_view;
-    core::project_vertices(mesh, frames, camera, pose, {}, 1, depth_view);
+    core::project_vertices(points, camera, pose, {}, 1, depth_view);
     core::VertexView ray_view = depth_view;
     const core::VertexView before = depth_view;
     by_depth->reject_occluded(camera, pose, depth_view);
