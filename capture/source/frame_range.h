@@ -15,6 +15,8 @@ struct FrameRange {
 struct PictureSize {
   int width_px = 0;
   int height_px = 0;
+
+  bool operator==(const PictureSize&) const = default;
 };
 
 }  // namespace sheen::capture

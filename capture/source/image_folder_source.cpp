@@ -81,7 +81,7 @@ class ImageFolderSource : public FrameSource {
     if (image.empty()) {
       throw core::bad_input(path, "cannot be read as a picture", "check that it is complete");
     }
-    check_picture_size(path, image, size_);
+    check_picture_size(path, {image.cols, image.rows}, size_);
     const int index = next_++;
     return Frame{std::move(image), index / fps_, index};
   }

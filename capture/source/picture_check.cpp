@@ -8,18 +8,16 @@
 namespace sheen::capture {
 namespace {
 
-std::string size_text(int width, int height) {
-  return std::to_string(width) + "x" + std::to_string(height);
+std::string text(const PictureSize& size) {
+  return std::to_string(size.width_px) + "x" + std::to_string(size.height_px);
 }
 
 }  // namespace
 
-void check_picture_size(const std::filesystem::path& subject, const cv::Mat& image,
+void check_picture_size(const std::filesystem::path& subject, const PictureSize& size,
                         const PictureSize& expected) {
-  if (image.cols == expected.width_px && image.rows == expected.height_px) return;
-  throw core::bad_input(subject,
-                        "is " + size_text(image.cols, image.rows) + " but the camera file says " +
-                            size_text(expected.width_px, expected.height_px),
+  if (size == expected) return;
+  throw core::bad_input(subject, "is " + text(size) + " but the camera file says " + text(expected),
                         "use the camera file of this recording");
 }
 

@@ -3,14 +3,12 @@
 
 #include "capture/source/frame_range.h"
 
-#include <opencv2/core/mat.hpp>
-
 #include <filesystem>
 
 namespace sheen::capture {
 
-/// Throws core::Error (bad_input) naming both sizes when `image` is not of the camera's size.
-void check_picture_size(const std::filesystem::path& subject, const cv::Mat& image,
+/// Throws core::Error (bad_input) naming both sizes when `size` is not the camera's.
+void check_picture_size(const std::filesystem::path& subject, const PictureSize& size,
                         const PictureSize& expected);
 
 /// Throws core::Error (bad_input) for a range that no recording can satisfy: negative, empty, or

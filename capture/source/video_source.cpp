@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "capture/source/video_source.h"
 
+#include "capture/source/motion_jpeg_source.h"
 #include "capture/source/picture_check.h"
+#include "capture/source/read_ahead_source.h"
+#include "capture/source/recording_end.h"
 #include "core/diagnostics/error.h"
 
 #include <opencv2/videoio.hpp>
@@ -21,6 +24,7 @@ bool is_usable_fps(double fps) {
   return std::isfinite(fps) && fps > 0.01 && fps < 1e4;
 }
 
+/// Any codec, by FFmpeg through OpenCV.
 class VideoSource : public FrameSource {
  public:
   VideoSource(const std::filesystem::path& path, const PictureSize& size, const FrameRange& range,
@@ -45,10 +49,6 @@ class VideoSource : public FrameSource {
 
  private:
   void open() {
-    std::error_code no_throw;
-    if (!std::filesystem::is_regular_file(path_, no_throw)) {
-      throw core::bad_input(path_, "there is no such video", "check the path in session.json");
-    }
     if (!capture_.open(path_.string(), cv::CAP_FFMPEG)) {
       throw core::bad_input(path_, "cannot be decoded as a video", "check that it is complete");
     }
@@ -60,7 +60,7 @@ class VideoSource : public FrameSource {
 
   void skip_to_start() {
     while (decoded_ < range_.start) {
-      if (!capture_.grab()) fail_early_end();
+      if (!capture_.grab()) throw early_end(path_, decoded_, promised_);
       note_grabbed();
     }
   }
@@ -70,7 +70,10 @@ class VideoSource : public FrameSource {
     cv::Mat image;
     if (!capture_.grab()) {
       has_ended_ = true;
-      if (decoded_ == 0 || decoded_ == range_.start || is_short()) fail_early_end();
+      if (decoded_ == 0 || decoded_ == range_.start ||
+          is_short(promised_, decoded_, time_s_ * file_fps_)) {
+        throw early_end(path_, decoded_, promised_);
+      }
       return std::nullopt;
     }
     const int index = decoded_;
@@ -79,7 +82,7 @@ class VideoSource : public FrameSource {
       throw core::bad_input(path_, "frame " + std::to_string(index) + " cannot be decoded",
                             "record or convert the video again");
     }
-    check_picture_size(path_, image, size_);
+    check_picture_size(path_, {image.cols, image.rows}, size_);
     return Frame{std::move(image), given_fps_ ? index / *given_fps_ : time_s_, index};
   }
 
@@ -91,20 +94,6 @@ class VideoSource : public FrameSource {
     const bool advances = std::isfinite(since_first_s) && since_first_s > time_s_;
     time_s_ = decoded_ == 0 ? 0 : advances ? since_first_s : time_s_ + 1 / file_fps_;
     ++decoded_;
-  }
-
-  [[nodiscard]] bool is_short() const {
-    if (!promised_) return false;
-    const double last_promised_s = (*promised_ - 1) / file_fps_;
-    return decoded_ < *promised_ - 1 && time_s_ < last_promised_s - 2 / file_fps_;
-  }
-
-  [[noreturn]] void fail_early_end() const {
-    std::string fault = "decoding stops after " + std::to_string(decoded_) + " frames";
-    if (promised_) fault += " of " + std::to_string(*promised_);
-    throw core::bad_input(path_, fault,
-                          "the file is truncated or damaged: copy it again or choose --end " +
-                              std::to_string(decoded_));
   }
 
   std::filesystem::path path_;
@@ -125,8 +114,13 @@ class VideoSource : public FrameSource {
 
 std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, const PictureSize& size,
                                         const FrameRange& range, std::optional<double> fps) {
+  std::error_code no_throw;
+  if (!std::filesystem::is_regular_file(path, no_throw)) {
+    throw core::bad_input(path, "there is no such video", "check the path in session.json");
+  }
+  if (auto source = open_motion_jpeg(path, size, range, fps)) return source;
   try {
-    return std::make_unique<VideoSource>(path, size, range, fps);
+    return read_ahead(std::make_unique<VideoSource>(path, size, range, fps));
   } catch (const cv::Exception&) {
     throw core::bad_input(path, "cannot be decoded as a video", "check that it is complete");
   }

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "capture/source/motion_jpeg_source.h"
+
+#include "capture/source/avi_reader.h"
+#include "capture/source/jpeg_decoder.h"
+#include "capture/source/picture_check.h"
+#include "capture/source/recording_end.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace sheen::capture {
+namespace {
+
+/// Interlaced recordings hold two half pictures each, which FFmpeg can join.
+bool has_whole_pictures(AviReader& reader) {
+  while (reader.advance()) {
+    if (const auto stated = jpeg_size(reader.read())) return *stated == reader.header().size;
+  }
+  return true;
+}
+
+class MotionJpegSource : public FrameSource {
+ public:
+  MotionJpegSource(std::filesystem::path path, AviReader reader, const PictureSize& size,
+                   const FrameRange& range, std::optional<double> fps)
+      : path_(std::move(path)), reader_(std::move(reader)), size_(size), range_(range), fps_(fps) {
+    check_range(path_, range_, promised());
+    // Decode the first wanted frame now: faults show before long work starts.
+    while (read_ < range_.start) {
+      if (!advance()) throw early_end(path_, read_, promised());
+    }
+    waiting_ = decode();
+    if (!waiting_) throw early_end(path_, read_, promised());
+  }
+
+  std::optional<Frame> next() override {
+    auto frame = std::exchange(waiting_, std::nullopt);
+    return frame ? std::move(frame) : decode();
+  }
+
+  [[nodiscard]] std::optional<int> frame_count() const override {
+    if (!promised()) return std::nullopt;
+    return std::min(*promised(), range_.end.value_or(*promised())) - range_.start;
+  }
+
+ private:
+  [[nodiscard]] std::optional<int> promised() const { return reader_.header().frames; }
+
+  bool advance() {
+    if (!reader_.advance()) return false;
+    if (read_ == 0) first_slot_ = reader_.slot();
+    ++read_;
+    return true;
+  }
+
+  std::optional<Frame> decode() {
+    while (!range_.end || read_ < *range_.end) {
+      if (!advance()) {
+        if (is_short(promised(), read_, reader_.slot() - first_slot_)) {
+          throw early_end(path_, read_, promised());
+        }
+        return std::nullopt;
+      }
+      const auto jpeg = reader_.read();
+      const auto stated = jpeg_size(jpeg);
+      if (!stated) continue;
+      check_picture_size(path_, *stated, size_);
+      Frame frame;
+      if (!decode_jpeg(jpeg, size_, frame.image)) continue;
+      frame.index = read_ - 1;
+      frame.time_s =
+          fps_ ? frame.index / *fps_ : (reader_.slot() - first_slot_) / reader_.header().fps;
+      return frame;
+    }
+    return std::nullopt;
+  }
+
+  std::filesystem::path path_;
+  AviReader reader_;
+  PictureSize size_;
+  FrameRange range_;
+  std::optional<double> fps_;
+  int read_ = 0;  ///< pictures gone past, damaged ones included
+  int first_slot_ = 0;
+  std::optional<Frame> waiting_;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> open_motion_jpeg(const std::filesystem::path& path,
+                                              const PictureSize& size, const FrameRange& range,
+                                              std::optional<double> fps) {
+  auto reader = AviReader::open(path);
+  if (!reader || reader->header().codec != "MJPG" || !has_whole_pictures(*reader)) return nullptr;
+  reader = AviReader::open(path);  // again from its first picture
+  return std::make_unique<MotionJpegSource>(path, std::move(*reader), size, range, fps);
+}
+
+}  // namespace sheen::capture

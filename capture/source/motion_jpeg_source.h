@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/source/frame_range.h"
+#include "capture/source/frame_source.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+namespace sheen::capture {
+
+/// Frames of an AVI file of JPEG pictures, decoded by libjpeg-turbo. Damaged pictures, which
+/// cameras deliver now and then, are left out; the indices of the others count them. Nothing when
+/// the file is of another kind. Otherwise as `open_video`.
+std::unique_ptr<FrameSource> open_motion_jpeg(const std::filesystem::path& path,
+                                              const PictureSize& size, const FrameRange& range,
+                                              std::optional<double> fps);
+
+}  // namespace sheen::capture

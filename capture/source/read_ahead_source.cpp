@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#include "capture/source/read_ahead_source.h"
+
+#include "core/concurrency/bounded_queue.h"
+
+#include <exception>
+#include <thread>
+#include <utility>
+#include <variant>
+
+namespace sheen::capture {
+namespace {
+
+constexpr std::size_t kMostWaiting = 3;  // pictures in full size: enough to even out the decoder
+
+class ReadAheadSource : public FrameSource {
+ public:
+  explicit ReadAheadSource(std::unique_ptr<FrameSource> source)
+      : source_(std::move(source)),
+        frame_count_(source_->frame_count()),
+        reader_([this] { read_all(); }) {}
+
+  ~ReadAheadSource() override { frames_.close(); }  // wakes the reader, which is then joined
+  ReadAheadSource(const ReadAheadSource&) = delete;
+  ReadAheadSource& operator=(const ReadAheadSource&) = delete;
+  ReadAheadSource(ReadAheadSource&&) = delete;
+  ReadAheadSource& operator=(ReadAheadSource&&) = delete;
+
+  std::optional<Frame> next() override {
+    auto item = frames_.pop();
+    if (!item) return std::nullopt;
+    if (const auto* failure = std::get_if<std::exception_ptr>(&*item)) {
+      std::rethrow_exception(*failure);
+    }
+    return std::get<Frame>(std::move(*item));
+  }
+
+  [[nodiscard]] std::optional<int> frame_count() const override { return frame_count_; }
+
+ private:
+  void read_all() {
+    try {
+      while (auto frame = source_->next()) {
+        if (!frames_.push(std::move(*frame))) return;
+      }
+    } catch (...) {
+      static_cast<void>(frames_.push(std::current_exception()));  // nobody listens any more
+    }
+    frames_.close();
+  }
+
+  std::unique_ptr<FrameSource> source_;
+  std::optional<int> frame_count_;
+  core::BoundedQueue<std::variant<Frame, std::exception_ptr>> frames_{kMostWaiting};
+  std::jthread reader_;  ///< last: it uses all of the above
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> read_ahead(std::unique_ptr<FrameSource> source) {
+  return std::make_unique<ReadAheadSource>(std::move(source));
+}
+
+}  // namespace sheen::capture
