@@ -3,13 +3,16 @@
 
 #include "capture/calibration/camera_file.h"
 #include "capture/files/text_file.h"
+#include "capture/session/frame_stamps.h"
 #include "capture/source/image_folder_source.h"
+#include "capture/source/picture_check.h"
 #include "capture/source/video_source.h"
 #include "core/diagnostics/error.h"
 
 #include <Eigen/SVD>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -113,11 +116,12 @@ void check_format(const SessionReader& reader) {
 
 void read_frames(SessionReader& reader, Session& session) {
   const json& frames = reader.object("frames");
-  reader.warn_unknown(frames, {"video", "images", "fps"}, "frames.");
+  reader.warn_unknown(frames, {"video", "images", "fps", "stamps"}, "frames.");
   if (frames.contains("video") == frames.contains("images")) {
     reader.fail("\"frames\" must hold exactly one of \"video\" and \"images\"");
   }
   session.video = reader.inner_file(frames, "video");
+  session.stamps = reader.inner_file(frames, "stamps");
   session.image_pattern = reader.inner_path(frames, "images");
   if (session.image_pattern && !NumberedName::parse(*session.image_pattern)) {
     reader.fail("\"images\" is no pattern with one number", "write it like images/%04d.png");
@@ -186,6 +190,13 @@ void read_object(SessionReader& reader, Session& session) {
   session.stage_from_object = read_transform(reader, object);
 }
 
+std::unique_ptr<FrameSource> open_pictures(const Session& session, const FrameRange& range) {
+  const PictureSize size{session.camera.width_px(), session.camera.height_px()};
+  if (session.video) return open_video(*session.video, size, range, session.fps);
+  return open_image_folder(session.folder, session.image_pattern.value_or(""), size, range,
+                           session.fps);
+}
+
 }  // namespace
 
 Session open_session(const std::filesystem::path& folder) {
@@ -217,11 +228,16 @@ Session open_session(const std::filesystem::path& folder) {
 
 std::unique_ptr<FrameSource> open_frames(const Session& session, int start,
                                          std::optional<int> end) {
-  const PictureSize size{session.camera.width_px(), session.camera.height_px()};
-  const FrameRange range{start, end};
-  if (session.video) return open_video(*session.video, size, range, session.fps);
-  return open_image_folder(session.folder, session.image_pattern.value_or(""), size, range,
-                           session.fps);
+  FrameRange range{start, end};
+  if (session.stamps) {
+    auto times_s = read_stamps(*session.stamps);
+    const int stamped = static_cast<int>(times_s.size());
+    check_range(*session.stamps, range, stamped);
+    range.end = std::min(end.value_or(stamped), stamped);
+    auto frames = open_pictures(session, range);
+    return with_stamps(std::move(frames), std::move(times_s));
+  }
+  return open_pictures(session, range);
 }
 
 }  // namespace sheen::capture

@@ -21,6 +21,8 @@ struct Session {
   std::optional<std::filesystem::path> video;
   std::optional<std::string> image_pattern;
   std::optional<double> fps;
+  std::optional<std::filesystem::path>
+      stamps;  ///< frames.csv: when each frame was taken; wins over fps
   core::CameraModel camera;
   std::optional<std::filesystem::path> board;  ///< board.yaml
   std::optional<std::filesystem::path> poses;  ///< poses.txt; wins over the board

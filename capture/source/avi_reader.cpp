@@ -74,10 +74,17 @@ std::optional<AviReader::Chunk> AviReader::next_chunk() {
       if (u32(start.data() + 8) == letters("movi")) return Chunk{letters("movi"), next_, 0};
       continue;
     }
-    if (chunk.size > file_size_ - chunk.begin) return std::nullopt;
+    if (!is_within(chunk)) {
+      file_size_ = file_.size();  // the file may still be growing
+      if (!is_within(chunk)) return std::nullopt;
+    }
     next_ = chunk.begin + chunk.size + chunk.size % 2;
     return chunk;
   }
+}
+
+bool AviReader::is_within(const Chunk& chunk) const {
+  return chunk.begin <= file_size_ && chunk.size <= file_size_ - chunk.begin;
 }
 
 bool AviReader::read_headers() {

@@ -32,7 +32,8 @@ class AviReader {
 
   [[nodiscard]] const AviHeader& header() const { return header_; }
 
-  /// Goes to the next picture; false at the end of the file or where it is cut or damaged.
+  /// Goes to the next picture; false at the end of the file or where it is cut or damaged. Of a
+  /// growing file it may be called again later.
   bool advance();
 
   /// Bytes of the picture gone to, valid until the next call of a member; empty when they cannot be
@@ -53,6 +54,7 @@ class AviReader {
       : file_(std::move(file)), file_size_(file_size) {}
 
   std::optional<Chunk> next_chunk();
+  [[nodiscard]] bool is_within(const Chunk& chunk) const;
   bool read_headers();
   std::vector<std::uint8_t> read_start(const Chunk& chunk, std::size_t bytes) const;
   void note_stream_header(const Chunk& chunk);

@@ -40,8 +40,9 @@ class MotionJpegSource : public FrameSource {
   }
 
   [[nodiscard]] std::optional<int> frame_count() const override {
-    if (!promised()) return std::nullopt;
-    return std::min(*promised(), range_.end.value_or(*promised())) - range_.start;
+    if (!promised() && !range_.end) return std::nullopt;
+    return std::min(promised().value_or(*range_.end), range_.end.value_or(*promised())) -
+           range_.start;
   }
 
  private:

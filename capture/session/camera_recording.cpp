@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+#include "capture/session/camera_recording.h"
+
+#include "capture/session/frame_stamps.h"
+#include "capture/source/avi_reader.h"
+#include "capture/source/jpeg_decoder.h"
+#include "capture/source/picture_check.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace sheen::capture {
+namespace {
+
+constexpr auto kPatience = std::chrono::milliseconds(100);  // how long a stop may go unnoticed
+constexpr std::size_t kMostUnrecorded = 3;
+
+}  // namespace
+
+/// Follows the recording's file while it grows.
+class LiveFrames : public FrameSource {
+ public:
+  explicit LiveFrames(CameraRecording& recording)
+      : recording_(recording), reader_(AviReader::open(recording.recorder_.video())) {}
+
+  std::optional<Frame> next() override {
+    while (true) {
+      const auto time_us = recording_.recorder_.wait_for(read_);
+      if (!time_us || !reader_ || !reader_->advance()) return next_unrecorded();
+      if (auto frame = decode(reader_->read(), *time_us)) return frame;
+    }
+  }
+
+  [[nodiscard]] std::optional<int> frame_count() const override { return std::nullopt; }
+
+ private:
+  std::optional<Frame> decode(std::span<const std::uint8_t> jpeg, std::int64_t time_us) {
+    const int index = read_++;
+    const auto size = jpeg_size(jpeg);
+    if (!size) return std::nullopt;
+    const CameraDescription camera = recording_.status().description;
+    check_picture_size(camera.device, *size, {camera.width_px, camera.height_px});
+    Frame frame;
+    if (!decode_jpeg(jpeg, *size, frame.image)) return std::nullopt;
+    frame.time_s = stamp_seconds(time_us);
+    frame.index = index;
+    return frame;
+  }
+
+  std::optional<Frame> next_unrecorded() {
+    while (const auto picture = recording_.next_unrecorded()) {
+      if (auto frame = decode(*picture->jpeg, picture->time_us)) return frame;
+    }
+    return std::nullopt;
+  }
+
+  CameraRecording& recording_;
+  std::optional<AviReader> reader_;
+  int read_ = 0;
+};
+
+CameraRecording::CameraRecording(std::unique_ptr<Camera> camera, SessionRecorder& recorder,
+                                 const RecordingLimits& limits)
+    : camera_(std::move(camera)), recorder_(recorder), limits_(limits) {
+  status_.description = camera_->description();
+  thread_ = std::jthread([this](const std::stop_token& stop) { record(stop); });
+}
+
+CameraRecording::~CameraRecording() {
+  stop();
+}
+
+void CameraRecording::stop() {
+  thread_.request_stop();
+  if (thread_.joinable()) thread_.join();
+}
+
+std::unique_ptr<FrameSource> CameraRecording::frames() {
+  return std::make_unique<LiveFrames>(*this);
+}
+
+LivePicture CameraRecording::latest() const {
+  const std::lock_guard lock(mutex_);
+  return latest_;
+}
+
+RecordingStatus CameraRecording::status() const {
+  const std::lock_guard lock(mutex_);
+  RecordingStatus status = status_;
+  status.recorded = recorder_.written();
+  status.disk_fault = recorder_.fault();
+  return status;
+}
+
+void CameraRecording::record(const std::stop_token& stop) {
+  try {
+    while (!stop.stop_requested() && !is_over()) {
+      if (const auto buffer = camera_->next(kPatience)) take(*buffer);
+    }
+  } catch (const core::Error& error) {
+    const std::lock_guard lock(mutex_);
+    status_.camera_fault = error;
+  }
+  recorder_.close();
+  {
+    const std::lock_guard lock(mutex_);
+    status_.camera = camera_->counts();
+    status_.has_ended = true;
+  }
+  has_unrecorded_.notify_all();
+}
+
+bool CameraRecording::is_over() const {
+  const std::lock_guard lock(mutex_);
+  const bool has_all = limits_.frames && status_.taken >= *limits_.frames;
+  return has_all ||
+         (limits_.seconds && latest_.jpeg && stamp_seconds(latest_.time_us) >= *limits_.seconds);
+}
+
+void CameraRecording::take(const CameraBuffer& buffer) {
+  auto jpeg = buffer.format == PixelFormat::mjpeg
+                  ? std::vector<std::uint8_t>(buffer.bytes.begin(), buffer.bytes.end())
+                  : encoder_.encode(buffer);
+  if (jpeg.empty()) {
+    const std::lock_guard lock(mutex_);
+    ++status_.unreadable;
+    return;
+  }
+  if (!first_s_) first_s_ = buffer.time_s;
+  // Time never goes back, even if a device that came back says so.
+  last_us_ = std::max(last_us_, std::int64_t{std::llround((buffer.time_s - *first_s_) * 1e6)});
+  const LivePicture picture{std::make_shared<const std::vector<std::uint8_t>>(std::move(jpeg)),
+                            last_us_, buffer.sequence};
+  const bool is_recorded = recorder_.add(picture);
+  const bool has_fault = !is_recorded && recorder_.fault().has_value();
+
+  const std::lock_guard lock(mutex_);
+  ++status_.taken;
+  status_.camera = camera_->counts();
+  latest_ = picture;
+  if (has_fault) {
+    unrecorded_.push_back(picture);
+    if (unrecorded_.size() > kMostUnrecorded) unrecorded_.pop_front();
+    has_unrecorded_.notify_all();
+  } else if (!is_recorded) {
+    ++status_.dropped;
+  }
+}
+
+std::optional<LivePicture> CameraRecording::next_unrecorded() {
+  std::unique_lock lock(mutex_);
+  has_unrecorded_.wait(lock, [this] { return !unrecorded_.empty() || status_.has_ended; });
+  if (unrecorded_.empty()) return std::nullopt;
+  LivePicture picture = std::move(unrecorded_.front());
+  unrecorded_.pop_front();
+  return picture;
+}
+
+}  // namespace sheen::capture

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/session/session_recorder.h"
+#include "capture/source/camera.h"
+#include "capture/source/frame_source.h"
+#include "capture/source/jpeg_encoder.h"
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+namespace sheen::capture {
+
+/// When a recording ends by itself.
+struct RecordingLimits {
+  std::optional<int> frames;      ///< after this many pictures, >= 1
+  std::optional<double> seconds;  ///< this long after the first picture, > 0
+};
+
+/// How a recording stands.
+struct RecordingStatus {
+  int taken = 0;       ///< pictures the camera delivered
+  int recorded = 0;    ///< of these, in the file
+  int dropped = 0;     ///< of these, lost because the disk was too slow
+  int unreadable = 0;  ///< raw pictures with too few bytes
+  CameraCounts camera;
+  CameraDescription description;
+  std::optional<core::Error> disk_fault;
+  std::optional<core::Error> camera_fault;
+  bool has_ended = false;
+};
+
+/// Camera -> recorder, on a thread that waits for the camera only: never for disk, fit or screen.
+/// A full disk ends the recording, not the pictures.
+class CameraRecording {
+ public:
+  /// The recorder is borrowed.
+  CameraRecording(std::unique_ptr<Camera> camera, SessionRecorder& recorder,
+                  const RecordingLimits& limits);
+  ~CameraRecording();
+  CameraRecording(const CameraRecording&) = delete;
+  CameraRecording& operator=(const CameraRecording&) = delete;
+  CameraRecording(CameraRecording&&) = delete;
+  CameraRecording& operator=(CameraRecording&&) = delete;
+
+  /// Ends the recording and completes its files; the frames end after what was recorded.
+  void stop();
+
+  /// Every recorded frame, the way a replay reads it: from the file, as it grows. Whoever is slow
+  /// catches up later. After a fault of the disk the frames go on, unrecorded, and old ones are
+  /// dropped. `next` waits for frames. To be destroyed before the recording.
+  [[nodiscard]] std::unique_ptr<FrameSource> frames();
+
+  /// The newest picture; no picture before the first.
+  [[nodiscard]] LivePicture latest() const;
+
+  [[nodiscard]] RecordingStatus status() const;
+
+ private:
+  friend class LiveFrames;
+
+  void record(const std::stop_token& stop);
+  void take(const CameraBuffer& buffer);
+  [[nodiscard]] bool is_over() const;
+  std::optional<LivePicture> next_unrecorded();
+
+  std::unique_ptr<Camera> camera_;
+  SessionRecorder& recorder_;
+  RecordingLimits limits_;
+  JpegEncoder encoder_;
+  std::optional<double> first_s_;  ///< these two: of the first and last picture
+  std::int64_t last_us_ = 0;
+
+  mutable std::mutex mutex_;
+  std::condition_variable has_unrecorded_;
+  RecordingStatus status_;
+  LivePicture latest_;
+  std::deque<LivePicture> unrecorded_;
+  std::jthread thread_;  ///< last: it uses all of the above
+};
+
+}  // namespace sheen::capture

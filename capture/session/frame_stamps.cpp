@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#include "capture/session/frame_stamps.h"
+
+#include "capture/files/text_file.h"
+#include "core/diagnostics/error.h"
+
+#include <array>
+#include <charconv>
+#include <cinttypes>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace sheen::capture {
+namespace {
+
+constexpr std::size_t kMaxBytes = std::size_t{1} << 28;
+constexpr double kMicroseconds = 1e6;
+
+/// The time in the line of frame `index`; nothing when it is no such line.
+std::optional<double> parse_line(std::string_view line, std::size_t index) {
+  std::size_t number = 0;
+  const char* const end = line.data() + line.size();
+  const auto [comma, status] = std::from_chars(line.data(), end, number);
+  if (status != std::errc() || number != index || comma == end || *comma != ',') {
+    return std::nullopt;
+  }
+  double time_s = 0;
+  const auto [stop, time_status] = std::from_chars(comma + 1, end, time_s);
+  const bool is_time = time_status == std::errc() && std::isfinite(time_s) && time_s >= 0;
+  if (!is_time || stop == end || *stop != ',') return std::nullopt;
+  return time_s;
+}
+
+class StampedSource : public FrameSource {
+ public:
+  StampedSource(std::unique_ptr<FrameSource> source, std::vector<double> times_s)
+      : source_(std::move(source)), times_s_(std::move(times_s)) {}
+
+  std::optional<Frame> next() override {
+    auto frame = source_->next();
+    if (frame) frame->time_s = times_s_.at(static_cast<std::size_t>(frame->index));
+    return frame;
+  }
+
+  [[nodiscard]] std::optional<int> frame_count() const override { return source_->frame_count(); }
+
+ private:
+  std::unique_ptr<FrameSource> source_;
+  std::vector<double> times_s_;
+};
+
+}  // namespace
+
+std::string stamps_heading() {
+  return "frame,time_s,sequence\n";
+}
+
+std::string stamp_line(int index, std::int64_t time_us, std::uint32_t sequence) {
+  std::array<char, 64> line{};
+  const int length =
+      std::snprintf(line.data(), line.size(), "%d,%" PRId64 ".%06" PRId64 ",%" PRIu32 "\n", index,
+                    time_us / 1'000'000, time_us % 1'000'000, sequence);
+  return {line.data(), static_cast<std::size_t>(length)};
+}
+
+double stamp_seconds(std::int64_t time_us) {
+  return static_cast<double>(time_us) / kMicroseconds;  // rounded once, as the text is when read
+}
+
+std::vector<double> read_stamps(const std::filesystem::path& path) {
+  const std::string text = read_text_file(path, kMaxBytes);
+  const auto fail = [&](const std::string& fault) {
+    return core::bad_input(path, fault, "see docs/session-format.md");
+  };
+  if (!text.starts_with(stamps_heading())) throw fail("does not begin with frame,time_s,sequence");
+
+  std::vector<double> times_s;
+  std::size_t begin = stamps_heading().size();
+  while (begin < text.size()) {
+    const std::size_t end = text.find('\n', begin);
+    // What a crash leaves: a line without an end, or zeros where the disk has not got it.
+    if (end == std::string::npos || text[begin] == '\0') break;
+    const auto time_s =
+        parse_line(std::string_view(text).substr(begin, end - begin), times_s.size());
+    if (!time_s) throw fail("line " + std::to_string(times_s.size() + 2) + " is no time stamp");
+    if (!times_s.empty() && *time_s < times_s.back()) {
+      throw fail("line " + std::to_string(times_s.size() + 2) + " goes back in time");
+    }
+    times_s.push_back(*time_s);
+    begin = end + 1;
+  }
+  return times_s;
+}
+
+std::unique_ptr<FrameSource> with_stamps(std::unique_ptr<FrameSource> source,
+                                         std::vector<double> times_s) {
+  return std::make_unique<StampedSource>(std::move(source), std::move(times_s));
+}
+
+}  // namespace sheen::capture

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: MIT
+#include "capture/session/session_recorder.h"
+
+#include "capture/calibration/camera_file.h"
+#include "capture/session/frame_stamps.h"
+#include "core/files/staged_output.h"
+
+#include <nlohmann/json.hpp>
+
+#include <chrono>
+#include <fstream>
+#include <span>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace sheen::capture {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostWaitingBytes = std::size_t{256} << 20;
+constexpr auto kFlushPause =
+    std::chrono::milliseconds(500);  // loses at most a second with its work
+
+std::span<const std::uint8_t> bytes_of(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+void copy_part(const fs::path& from, const fs::path& to) {
+  std::error_code fault;
+  fs::copy_file(from, to, fault);
+  if (fault) {
+    throw core::bad_input(from, "cannot be copied into the session: " + fault.message(),
+                          "check the file and the free space");
+  }
+}
+
+nlohmann::ordered_json transform_json(const Eigen::Isometry3d& transform) {
+  auto numbers = nlohmann::ordered_json::array();
+  for (Eigen::Index i = 0; i < 16; ++i) numbers.push_back(transform.matrix()(i / 4, i % 4));
+  return numbers;
+}
+
+void write_description(const fs::path& folder, const std::string& mesh,
+                       const Eigen::Isometry3d& stage_from_object) {
+  const nlohmann::ordered_json description{
+      {"format", "sheen-session"},
+      {"version", 1},
+      {"frames", {{"video", "frames.avi"}, {"stamps", "frames.csv"}}},
+      {"camera", "camera.yaml"},
+      {"board", "board.yaml"},
+      {"object", {{"mesh", mesh}, {"T_stage_object", transform_json(stage_from_object)}}}};
+  std::ofstream file(folder / "session.json", std::ios::binary);
+  file << description.dump(2) << '\n';
+  file.close();
+  if (!file) {
+    throw core::Error(core::Error::Kind::run_failed, folder, "cannot be written",
+                      "free disk space");
+  }
+}
+
+void refuse_existing(const fs::path& folder) {
+  std::error_code no_throw;
+  if (!fs::exists(folder, no_throw) || fs::is_empty(folder, no_throw)) return;
+  throw core::bad_input(folder, "exists already", "choose another name for the recording");
+}
+
+}  // namespace
+
+SessionRecorder::SessionRecorder(const fs::path& folder, const SessionSetup& setup, double fps)
+    : folder_(folder) {
+  refuse_existing(folder);
+  // The folder appears complete; the open files move with it.
+  core::StagedOutput staged(folder);
+  fs::create_directories(staged.path());
+  write_camera(staged.path() / "camera.yaml", setup.camera);
+  copy_part(setup.board, staged.path() / "board.yaml");
+  const std::string mesh = "object" + setup.mesh.extension().string();
+  copy_part(setup.mesh, staged.path() / mesh);
+  write_description(staged.path(), mesh, setup.stage_from_object);
+  video_.emplace(staged.path() / "frames.avi",
+                 PictureSize{setup.camera.width_px(), setup.camera.height_px()}, fps);
+  stamps_ = FileHandle::create(staged.path() / "frames.csv");
+  const std::string heading = stamps_heading();
+  if (stamps_->write_at(0, bytes_of(heading)) != 0) {
+    throw core::Error(core::Error::Kind::run_failed, folder, "cannot be written",
+                      "free disk space");
+  }
+  stamps_end_ = heading.size();
+  staged.commit();
+
+  writer_ = std::jthread([this] { write_all(); });
+  flusher_ = std::jthread([this](const std::stop_token& stop) { flush_until_stopped(stop); });
+}
+
+SessionRecorder::~SessionRecorder() {
+  close();
+}
+
+bool SessionRecorder::add(LivePicture picture) {
+  {
+    const std::lock_guard lock(mutex_);
+    const std::size_t bytes = picture.jpeg->size();
+    if (fault_ || is_closing_ || waiting_bytes_ + bytes > kMostWaitingBytes) return false;
+    waiting_bytes_ += bytes;
+    waiting_.push_back(std::move(picture));
+  }
+  has_news_.notify_all();
+  return true;
+}
+
+std::optional<core::Error> SessionRecorder::fault() const {
+  const std::lock_guard lock(mutex_);
+  return fault_;
+}
+
+std::optional<std::int64_t> SessionRecorder::wait_for(int index) const {
+  std::unique_lock lock(mutex_);
+  const auto place = static_cast<std::size_t>(index);
+  has_news_.wait(lock, [&] { return place < written_us_.size() || fault_ || is_closed_; });
+  if (place < written_us_.size()) return written_us_[place];
+  return std::nullopt;
+}
+
+int SessionRecorder::written() const {
+  const std::lock_guard lock(mutex_);
+  return static_cast<int>(written_us_.size());
+}
+
+void SessionRecorder::close() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_closing_ = true;
+  }
+  has_news_.notify_all();
+  if (writer_.joinable()) writer_.join();
+  flusher_.request_stop();
+  if (flusher_.joinable()) flusher_.join();
+}
+
+void SessionRecorder::write_all() {
+  while (true) {
+    LivePicture picture;
+    {
+      std::unique_lock lock(mutex_);
+      has_news_.wait(lock, [&] { return !waiting_.empty() || is_closing_ || fault_; });
+      if (waiting_.empty() || fault_) break;
+      picture = std::move(waiting_.front());
+      waiting_.pop_front();
+      waiting_bytes_ -= picture.jpeg->size();
+    }
+    write(picture);
+  }
+  if (!fault()) {
+    if (const int status = video_->close(); status != 0) set_fault(status);
+    flush();
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    waiting_.clear();
+    is_closed_ = true;
+  }
+  has_news_.notify_all();
+}
+
+void SessionRecorder::write(const LivePicture& picture) {
+  if (const int status = video_->append(*picture.jpeg); status != 0) return set_fault(status);
+  // A picture counts once its stamp is there.
+  const std::string line = stamp_line(written(), picture.time_us, picture.sequence);
+  if (const int status = stamps_->write_at(stamps_end_, bytes_of(line)); status != 0) {
+    stamps_->truncate(stamps_end_);
+    return set_fault(status);
+  }
+  stamps_end_ += line.size();
+  {
+    const std::lock_guard lock(mutex_);
+    written_us_.push_back(picture.time_us);
+  }
+  has_news_.notify_all();
+}
+
+void SessionRecorder::flush_until_stopped(const std::stop_token& stop) {
+  // Once what the folder holds besides pictures.
+  std::error_code no_throw;
+  for (const auto& entry : fs::directory_iterator(folder_, no_throw)) {
+    static_cast<void>(FileHandle::open_to_read(entry.path()).flush());
+  }
+  std::unique_lock lock(flush_mutex_);
+  while (!flush_pause_.wait_for(lock, stop, kFlushPause, [] { return false; })) {
+    if (stop.stop_requested()) return;
+    flush();
+  }
+}
+
+void SessionRecorder::flush() {
+  // Pictures before stamps: a stamp without its picture would say nothing.
+  if (const int status = video_->flush(); status != 0) return set_fault(status);
+  if (const int status = stamps_->flush(); status != 0) set_fault(status);
+}
+
+void SessionRecorder::set_fault(int fault) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!fault_) {
+      fault_ = core::Error(core::Error::Kind::run_failed, folder_,
+                           "recording has stopped: " + std::generic_category().message(fault),
+                           "what was recorded is kept; free disk space and record again");
+    }
+  }
+  has_news_.notify_all();
+}
+
+}  // namespace sheen::capture

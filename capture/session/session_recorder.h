@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/session/avi_writer.h"
+#include "core/diagnostics/error.h"
+#include "core/geometry/camera.h"
+
+#include <Eigen/Geometry>
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <thread>
+#include <vector>
+
+namespace sheen::capture {
+
+/// What a session says besides its frames. Board and mesh are copied.
+struct SessionSetup {
+  core::CameraModel camera;
+  std::filesystem::path board;
+  std::filesystem::path mesh;
+  Eigen::Isometry3d stage_from_object = Eigen::Isometry3d::Identity();
+};
+
+/// A picture on its way from the camera: shared, since disk, fit and screen take it at their pace.
+struct LivePicture {
+  std::shared_ptr<const std::vector<std::uint8_t>> jpeg;
+  std::int64_t time_us = 0;    ///< since the first picture
+  std::uint32_t sequence = 0;  ///< the camera's own count
+};
+
+/// Records a session that survives a crash. The folder opens as a session before the first picture;
+/// pictures and their time stamps are appended as they come and flushed to the disk twice a second.
+/// After a crash all but the last second is there. Whoever adds pictures never waits for the disk:
+/// one thread writes, another flushes.
+class SessionRecorder {
+ public:
+  /// Makes the folder. Throws core::Error: bad_input when it holds something already or a part of
+  /// `setup` cannot be read, run_failed when the disk is full.
+  SessionRecorder(const std::filesystem::path& folder, const SessionSetup& setup, double fps);
+  ~SessionRecorder();
+  SessionRecorder(const SessionRecorder&) = delete;
+  SessionRecorder& operator=(const SessionRecorder&) = delete;
+  SessionRecorder(SessionRecorder&&) = delete;
+  SessionRecorder& operator=(SessionRecorder&&) = delete;
+
+  /// Takes a picture to be written; false when it is not recorded: after a fault or `close`, or
+  /// because the disk is so slow that too much waits already.
+  bool add(LivePicture picture);
+
+  /// What ended the recording early, such as a full disk.
+  [[nodiscard]] std::optional<core::Error> fault() const;
+
+  /// Waits until picture `index` is in the file and returns its time; nothing when it never will
+  /// be.
+  [[nodiscard]] std::optional<std::int64_t> wait_for(int index) const;
+
+  /// Pictures in the file.
+  [[nodiscard]] int written() const;
+
+  /// Writes what waits and completes the file; nothing can be added any more.
+  void close();
+
+  [[nodiscard]] std::filesystem::path video() const { return folder_ / "frames.avi"; }
+
+ private:
+  void write_all();
+  void write(const LivePicture& picture);
+  void flush_until_stopped(const std::stop_token& stop);
+  void flush();
+  void set_fault(int fault);
+
+  std::filesystem::path folder_;
+  std::optional<AviWriter> video_;  ///< these two: of the writing thread
+  std::optional<FileHandle> stamps_;
+  std::uint64_t stamps_end_ = 0;
+
+  mutable std::mutex mutex_;
+  mutable std::condition_variable has_news_;
+  std::deque<LivePicture> waiting_;
+  std::size_t waiting_bytes_ = 0;
+  std::vector<std::int64_t> written_us_;  ///< times of the pictures in the file
+  std::optional<core::Error> fault_;
+  bool is_closing_ = false;
+  bool is_closed_ = false;
+
+  std::condition_variable_any flush_pause_;
+  std::mutex flush_mutex_;
+  std::jthread writer_;  ///< last: they use all of the above
+  std::jthread flusher_;
+};
+
+}  // namespace sheen::capture
