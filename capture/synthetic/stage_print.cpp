@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "capture/synthetic/stage_print.h"
 
+#include "capture/board_print/tag_bitmap.h"
 #include "capture/pose/apriltag_family.h"
 #include "capture/synthetic/finish.h"
 
 #include <cassert>
 #include <cmath>
-#include <cstdlib>
-#include <memory>
 
 namespace sheen::capture::synthetic {
 namespace {
@@ -17,15 +16,6 @@ constexpr float kInk = 0.035f;
 constexpr float kTable = 0.115f;
 constexpr double kTagOfRadius = 0.56;  // side of a tag over the radius of the object
 constexpr double kPitchOfTag = 58.0 / 42.0;
-
-// What image_u8_destroy does; Debian's libapriltag does not export it.
-struct ImageDeleter {
-  void operator()(image_u8_t* image) const {
-    std::free(image->buf);
-    std::free(image);
-  }
-};
-using Image = std::unique_ptr<image_u8_t, ImageDeleter>;
 
 }  // namespace
 
@@ -53,13 +43,13 @@ StagePrint::StagePrint(double object_radius_m) {
 
     // Take the bitmap of libapriltag itself, without the white module around it.
     const int id = static_cast<int>(prints_.size());
-    const Image image(apriltag_to_image(family->get(), id));
-    assert(image->width == kModules + 2 && image->height == kModules + 2);
+    const TagBitmap bitmap = draw_tag(*family, id);
+    assert(bitmap.modules == kModules + 2 && bitmap.modules_across_tag == kModules);
     Print& print = prints_.emplace_back();
     for (int y = 0; y < kModules; ++y) {
       for (int x = 0; x < kModules; ++x) {
         print[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)] =
-            image->buf[(y + 1) * image->stride + x + 1] > 127;
+            !bitmap.is_black(y + 1, x + 1);
       }
     }
     Board::Tag tag;

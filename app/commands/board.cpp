@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#include "app/commands/board.h"
+
+#include "capture/board_print/board_pdf.h"
+#include "core/files/staged_output.h"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+namespace sheen::app {
+namespace {
+
+struct BoardOptions {
+  capture::BoardDesign design;
+  std::filesystem::path output;
+  double measured_mm = capture::kRulerMm;
+};
+
+std::string describe(const capture::BoardPlan& plan) {
+  std::string text = fmt::format(
+      "{} tags of {} mm on {} {} of {} paper", plan.board.tags.size(), plan.design.tag_mm,
+      plan.sheets.size(), plan.sheets.size() == 1 ? "sheet" : "sheets", plan.design.paper.name);
+  if (plan.free_width_mm > 0) {
+    text +=
+        fmt::format(", free middle {:.0f} x {:.0f} mm", plan.free_width_mm, plan.free_height_mm);
+  }
+  return text;
+}
+
+void run_board(const BoardOptions& options, const CommandContext& context) {
+  const capture::BoardPlan plan = capture::plan_board(options.design);
+  auto yaml = options.output;
+  yaml.replace_extension(".yaml");
+  core::check_writable(options.output);
+  capture::write_board_pdf(options.output, plan);
+  capture::write_board(yaml, capture::board_as_printed(plan.board, options.measured_mm));
+
+  const bool is_measured = options.measured_mm != capture::kRulerMm;
+  const std::string advice =
+      is_measured ? fmt::format("{} holds the sizes of a print whose ruler is {} mm long",
+                                yaml.filename().string(), options.measured_mm)
+                  : fmt::format(
+                        "print at 100 %, measure the ruler; if it is not {} mm long, run "
+                        "this again with --measured-mm",
+                        capture::kRulerMm);
+  context.publish({{"pdf", options.output.string()},
+                   {"board", yaml.string()},
+                   {"sheets", plan.sheets.size()},
+                   {"tags", plan.board.tags.size()},
+                   {"columns", plan.columns},
+                   {"rows", plan.rows},
+                   {"tag_mm", plan.design.tag_mm},
+                   {"pitch_mm", plan.pitch_mm},
+                   {"free_mm", {plan.free_width_mm, plan.free_height_mm}},
+                   {"ruler_mm", capture::kRulerMm},
+                   {"measured_mm", options.measured_mm}},
+                  fmt::format("{}\nwritten  {} and {}\n{}\n", describe(plan),
+                              options.output.string(), yaml.string(), advice));
+}
+
+void add_design_options(CLI::App& command, BoardOptions& options) {
+  capture::BoardDesign& design = options.design;
+  std::vector<std::string> papers;
+  for (const capture::Paper& paper : capture::kPapers) papers.emplace_back(paper.name);
+  command
+      .add_option_function<std::string>(
+          "--paper",
+          [&design](const std::string& name) {
+            for (const capture::Paper& paper : capture::kPapers) {
+              if (paper.name == name) design.paper = paper;
+            }
+          },
+          "Paper, upright (default a4)")
+      ->check(CLI::IsMember(papers));
+  command.add_option("--tag-mm", design.tag_mm, "Side of a tag's black square")
+      ->check(CLI::Range(5.0, 250.0).description(""))
+      ->type_name("MM")
+      ->capture_default_str();
+  command
+      .add_option("--columns", design.columns,
+                  "Cells across; more than one sheet holds are printed on several, with marks to "
+                  "cut along (default: one sheet)")
+      ->check(CLI::Range(1, 60).description(""))
+      ->type_name("N");
+  command.add_option("--rows", design.rows, "Cells down, likewise")
+      ->check(CLI::Range(1, 60).description(""))
+      ->type_name("N");
+  command.add_flag("--full", design.full_grid,
+                   "Tags in the middle too, for calibrating; default: the rim only, the middle is "
+                   "left to the object");
+  const std::vector<std::string> families(capture::kPrintableFamilies.begin(),
+                                          capture::kPrintableFamilies.end());
+  command.add_option("--family", design.family, "Tag family")
+      ->check(CLI::IsMember(families))
+      ->capture_default_str();
+  command.add_option("--first-id", design.first_id, "Id of the tag at the lower left")
+      ->check(CLI::NonNegativeNumber.description(""))
+      ->type_name("ID")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_board_command(CLI::App& program, CommandContext& context) {
+  auto options = std::make_shared<BoardOptions>();
+  CLI::App* command =
+      program.add_subcommand("board", "Make a printable stage of tags (PDF) and its board.yaml");
+  command->footer(
+      "Examples:\n"
+      "  sheen board -o board.pdf                        one A4 sheet, free middle\n"
+      "  sheen board -o board.pdf --measured-mm 148.6    the ruler of my print is 148.6 mm long\n"
+      "  sheen board -o big.pdf --tag-mm 40 --columns 9 --rows 9    several sheets\n"
+      "  sheen board -o grid.pdf --full --tag-mm 25      full grid, for sheen calibrate");
+  command->add_option("-o,--output", options->output, "PDF to write; the .yaml comes beside it")
+      ->required()
+      ->check([](const std::string& text) {
+        return std::filesystem::path(text).extension() == ".pdf" ? std::string()
+                                                                 : "must end with .pdf";
+      })
+      ->type_name("FILE.pdf");
+  add_design_options(*command, *options);
+  command
+      ->add_option("--measured-mm", options->measured_mm,
+                   "Length of the printed ruler as you measure it; board.yaml then fits the print")
+      ->check(CLI::Range(75.0, 300.0).description(""))
+      ->type_name("MM")
+      ->capture_default_str();
+  add_common_options(*command, context);
+  command->callback([options, &context] { run_board(*options, context); });
+}
+
+}  // namespace sheen::app

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "app/commands/command_context.h"
+
+namespace sheen::app {
+
+/// `sheen board -o board.pdf`: a printable stage of tags and its board.yaml.
+void add_board_command(CLI::App& program, CommandContext& context);
+
+}  // namespace sheen::app
