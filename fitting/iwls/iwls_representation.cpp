@@ -2,8 +2,7 @@
 #include "fitting/iwls/iwls_representation.h"
 
 #include "fitting/iwls/adaptive.h"
-#include "fitting/iwls/batch.h"
-#include "fitting/iwls/quadtree.h"
+#include "fitting/iwls/quad_construction.h"
 #include "fitting/samples/patch_loop.h"
 
 #include <cstdint>
@@ -35,6 +34,7 @@ class IwlsRepresentation final : public Representation {
 
  private:
   FitOutcome absorb_sample(std::size_t patch_idx, const Sample& sample);
+  void announce(const core::SampleBatch& batch, std::size_t idx);
   FitOutcome solve_patch(std::size_t patch_idx);
 
   PatchLoop loop_;
@@ -59,9 +59,20 @@ FitOutcome IwlsRepresentation<Builder>::absorb_sample(std::size_t patch_idx, con
 
 template <typename Builder>
 const ModelUpdate& IwlsRepresentation<Builder>::absorb(const core::SampleBatch& batch) {
-  return loop_.absorb(batch, [this](std::size_t patch_idx, const Sample& sample) {
-    return absorb_sample(patch_idx, sample);
-  });
+  return loop_.absorb(
+      batch,
+      [this](std::size_t patch_idx, const Sample& sample) {
+        return absorb_sample(patch_idx, sample);
+      },
+      [&](std::size_t idx) { announce(batch, idx); });
+}
+
+template <typename Builder>
+void IwlsRepresentation<Builder>::announce(const core::SampleBatch& batch, std::size_t idx) {
+  if constexpr (requires { builder_.prefetch(idx, 0.0, 0.0, model_); }) {
+    builder_.prefetch(batch.patch[idx], static_cast<double>(batch.u[idx]),
+                      static_cast<double>(batch.v[idx]), model_);
+  }
 }
 
 // Solves a touched patch from its sums alone: priors that moved after a node's last fit leave no
@@ -103,15 +114,20 @@ std::unique_ptr<Representation> make_with_terms(const core::VertexNeighbours& ne
     return std::make_unique<IwlsRepresentation<Builder>>(neighbours, settings,
                                                          static_cast<int>(kTerms), threads);
   };
+  const auto make_quads = [&]<bool kIncremental>() {
+    return settings.rule.faithful
+               ? make.template operator()<QuadConstruction<double, kTerms, kIncremental>>()
+               : make.template operator()<QuadConstruction<float, kTerms, kIncremental>>();
+  };
   switch (construction) {
     case Construction::adaptive:
       return make.template operator()<Adaptive<kTerms>>();
     case Construction::batch:
-      return make.template operator()<Batch<kTerms>>();
+      return make_quads.template operator()<false>();
     case Construction::quadtree:
       break;
   }
-  return make.template operator()<Quadtree<kTerms>>();
+  return make_quads.template operator()<true>();
 }
 
 }  // namespace

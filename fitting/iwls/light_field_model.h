@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "fitting/huge_pages.h"
 #include "fitting/iwls/options.h"
+#include "fitting/iwls/quad_kernels.h"
 #include "fitting/light_field.h"
 
 #include <Eigen/Core>
@@ -27,8 +29,8 @@ class LightFieldModel final : public LightField {
   /// Mid grey everywhere, nothing observed.
   LightFieldModel(ModelShape shape, std::size_t patch_count);
 
-  /// `coefficients` as `coefficients()` returns them, all finite; one flag per patch.
-  LightFieldModel(ModelShape shape, std::vector<Eigen::half> coefficients,
+  /// `coefficients` as `coefficients_by_center()` returns them, all finite; one flag per patch.
+  LightFieldModel(ModelShape shape, const std::vector<Eigen::half>& coefficients,
                   std::vector<std::uint8_t> observed);
 
   [[nodiscard]] std::string_view representation() const override { return "iwls"; }
@@ -38,16 +40,27 @@ class LightFieldModel final : public LightField {
   /// Mean of the constant terms of the centres inside the disc.
   [[nodiscard]] Eigen::Vector3f mean_colour(std::size_t patch_idx) const override;
   [[nodiscard]] const std::vector<std::uint8_t>& observed() const override { return observed_; }
-  [[nodiscard]] std::size_t coefficient_count() const override { return coefficients_.size(); }
+  [[nodiscard]] std::size_t coefficient_count() const override {
+    return observed_.size() * shape_.centers.size() * static_cast<std::size_t>(3 * shape_.terms);
+  }
 
   [[nodiscard]] const ModelShape& shape() const { return shape_; }
 
-  /// All coefficients: [patch][centre][term][r, g, b], no padding.
+  /// All coefficients as the model file holds them: [patch][centre][term][r, g, b].
+  [[nodiscard]] std::vector<Eigen::half> coefficients_by_center() const;
+
+  /// All coefficients as they are fitted, evaluated and drawn: [patch][quad][term][r, g, b][lane],
+  /// four centres side by side, centre j in slot `slots_of_centers`[j] = 4 quad + lane. Where there
+  /// is no centre, zeros.
   [[nodiscard]] std::span<const Eigen::half> coefficients() const { return coefficients_; }
   [[nodiscard]] std::span<const Eigen::half> coefficients(std::size_t patch_idx) const {
     return coefficients().subspan(patch_idx * per_patch_, per_patch_);
   }
   [[nodiscard]] std::size_t coefficients_per_patch() const { return per_patch_; }
+  /// The same for the fit, as bits.
+  [[nodiscard]] std::uint16_t* slots_of(std::size_t patch_idx) {
+    return &coefficients_.data()[patch_idx * per_patch_].x;
+  }
 
   /// Stores one centre's polynomial ([term][r, g, b], `3 * terms` values), limited to what a half
   /// can hold. Returns whether a stored number changed. Patches may be written by different
@@ -59,9 +72,19 @@ class LightFieldModel final : public LightField {
   bool store_observed(std::size_t patch_idx, bool observed);
 
  private:
+  [[nodiscard]] std::size_t values_per_center() const {
+    return static_cast<std::size_t>(3 * shape_.terms);
+  }
+  /// Where a number of a centre's polynomial ([term][r, g, b]) stands.
+  [[nodiscard]] std::size_t place(std::size_t patch_idx, std::size_t center_idx,
+                                  std::size_t value) const;
+
   ModelShape shape_;
+  std::vector<std::size_t> slots_;  ///< of the centres
+  std::vector<float> u_, v_;        ///< of the slots
+  Evaluate evaluate_;
   std::size_t per_patch_;
-  std::vector<Eigen::half> coefficients_;
+  std::vector<Eigen::half, HugePageAllocator<Eigen::half>> coefficients_;
   std::vector<std::uint8_t> observed_;
 };
 

@@ -91,7 +91,10 @@ ModelPart encode_model(const LightField& light_field) {
                      {"centers", std::move(centers)},
                      {"terms", static_cast<unsigned>(shape.terms)},
                      {"supportRadius", static_cast<double>(shape.support_radius)}};
-  part.arrays["coefficients"] = std::as_bytes(model.coefficients());
+  const auto coefficients =
+      std::make_shared<const std::vector<Eigen::half>>(model.coefficients_by_center());
+  part.arrays["coefficients"] = std::as_bytes(std::span(*coefficients));
+  part.owner = coefficients;
   return part;
 }
 
@@ -100,9 +103,8 @@ std::unique_ptr<const LightField> decode_model(const ModelPart& part,
   ModelShape shape = shape_from(part.parameters);
   const std::size_t count =
       observed.size() * shape.centers.size() * static_cast<std::size_t>(3 * shape.terms);
-  std::vector<Eigen::half> coefficients = required_halves(part, "coefficients", count);
-  return std::make_unique<LightFieldModel>(std::move(shape), std::move(coefficients),
-                                           std::move(observed));
+  return std::make_unique<LightFieldModel>(
+      std::move(shape), required_halves(part, "coefficients", count), std::move(observed));
 }
 
 }  // namespace sheen::fitting::iwls

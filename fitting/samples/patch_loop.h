@@ -6,6 +6,7 @@
 #include "core/samples/sample_batch.h"
 #include "fitting/representation.h"
 #include "fitting/samples/change_list.h"
+#include "fitting/samples/fit_outcome.h"
 #include "fitting/samples/sample.h"
 #include "fitting/unseen/fill_unseen.h"
 
@@ -18,12 +19,6 @@
 #include <vector>
 
 namespace sheen::fitting {
-
-/// What one call did to a patch of a model.
-struct FitOutcome {
-  std::size_t fits = 0;  ///< systems solved
-  bool changed = false;  ///< a stored number changed
-};
 
 /// What representations share whose patches are fitted independently: the threads, the statistics,
 /// the list of changes and the colours of patches never seen. Updates are valid until the next
@@ -42,11 +37,21 @@ class PatchLoop {
   /// FitOutcome.
   template <typename AbsorbOne>
   const ModelUpdate& absorb(const core::SampleBatch& batch, const AbsorbOne& absorb_one) {
+    return absorb(batch, absorb_one, [](std::size_t /*idx*/) {});
+  }
+
+  /// The same; `announce(idx)` is called a few samples ahead with the index of one to come, so that
+  /// its memory can be fetched meanwhile.
+  template <typename AbsorbOne, typename Announce>
+  const ModelUpdate& absorb(const core::SampleBatch& batch, const AbsorbOne& absorb_one,
+                            const Announce& announce) {
+    constexpr std::size_t ahead = 3;
     changes_.reset(batch.size());
     // Patches are independent and appear once: any split of the batch gives the same result.
     run(batch.size(), [&](std::size_t i, FitStatistics& statistics) {
       assert(batch.patch[i] < neighbours_.vertex_count());
       assert(i == 0 || batch.patch[i - 1] < batch.patch[i]);
+      if (i + ahead < batch.size()) announce(i + ahead);
       const auto sample = usable_sample(batch, i);
       if (!sample) return;
       const FitOutcome outcome = absorb_one(batch.patch[i], *sample);

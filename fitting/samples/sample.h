@@ -30,8 +30,9 @@ inline std::optional<Sample> usable_sample(const core::SampleBatch& batch, std::
                        std::abs(sample.rgb[1]) + std::abs(sample.rgb[2]);
   constexpr double largest = 1e4;  // a half holds 65504; NaN fails every comparison
   if (!(total < largest)) return std::nullopt;
-  const double radius = std::hypot(sample.u, sample.v);
-  if (radius > 1.0) {
+  const double radius2 = sample.u * sample.u + sample.v * sample.v;
+  if (radius2 > 1.0) {
+    const double radius = std::sqrt(radius2);
     sample.u /= radius;
     sample.v /= radius;
   }

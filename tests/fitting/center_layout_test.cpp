@@ -2,12 +2,14 @@
 #include "fitting/iwls/center_layout.h"
 
 #include "core/geometry/disc_map.h"
-#include "fitting/iwls/node_tree.h"
+#include "fitting/iwls/quad_tree.h"
+#include "fitting/iwls/slots.h"
 #include "fitting/iwls/wendland.h"
 #include "tests/fitting/samples_for_tests.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace sheen::fitting::iwls {
@@ -121,24 +123,40 @@ TEST(PartitionOfUnity, DirectionsBeyondTheRimCountAsRim) {
   EXPECT_NEAR(beyond.weight_sum, rim.weight_sum, 1e-6f * rim.weight_sum);
 }
 
-// Radii halve their area per level (eq. 9): sqrt 2, 1, 1 / sqrt 2, 1 / 2.
-TEST(NodeTree, HasThePapersRadiiAndNestedCells) {
-  const NodeTree tree(make_center_layout(Layout::grid, 64));
-  ASSERT_EQ(tree.nodes().size(), 1u + 4u + 16u + 64u);
-  EXPECT_DOUBLE_EQ(tree.nodes()[0].radius, std::sqrt(2.0));
-  EXPECT_DOUBLE_EQ(tree.nodes()[1].radius, 1.0);
-  EXPECT_DOUBLE_EQ(tree.nodes()[5].radius, std::sqrt(0.5));
-  EXPECT_DOUBLE_EQ(tree.nodes()[21].radius, 0.5);
-  EXPECT_EQ(tree.finest_below(0).size(), 64u);
-  for (std::size_t node = 0; node < 21; ++node) {
-    const double half_cell =
-        std::abs(tree.nodes()[tree.children(node)[0]].u - tree.nodes()[node].u);
-    for (const std::uint32_t child : tree.children(node)) {
-      EXPECT_EQ(tree.parent(child), node);
-      EXPECT_NEAR(std::abs(tree.nodes()[child].u - tree.nodes()[node].u), half_cell, 1e-6);
-      EXPECT_NEAR(std::abs(tree.nodes()[child].v - tree.nodes()[node].v), half_cell, 1e-6);
+// Radii halve their area per level (eq. 9): sqrt 2, 1, 1 / sqrt 2, 1 / 2. Children stand at the
+// corners of a square of half their parent's cell, two by two in each axis.
+TEST(QuadTree, HasThePapersRadiiAndNestedCells) {
+  const QuadTree<double> tree(make_center_layout(Layout::grid, 64), true);
+  ASSERT_EQ(tree.quad_count, 1u + 1u + 4u + 16u);
+  EXPECT_EQ(tree.first_finest, 6u);
+  EXPECT_DOUBLE_EQ(tree.quads[0].radius, std::sqrt(2.0));
+  EXPECT_DOUBLE_EQ(tree.quads[1].radius, 1.0);
+  EXPECT_DOUBLE_EQ(tree.quads[2].radius, std::sqrt(0.5));
+  EXPECT_DOUBLE_EQ(tree.quads[6].radius, 0.5);
+  for (std::size_t quad = 0; quad < tree.first_finest; ++quad) {
+    const double half_cell = quad == 0 ? 0.5 : (quad == 1 ? 0.25 : 0.125);
+    for (std::size_t lane = 0; lane < (quad == 0 ? 1u : kLanes); ++lane) {
+      const Quad<double>& below = tree.quads[quad == 0 ? 1 : 4 * (quad - 1) + lane + 2];
+      for (std::size_t i = 0; i < kLanes; ++i) {
+        EXPECT_NEAR(below.u[i] - tree.quads[quad].u[lane], i % 2 == 0 ? -half_cell : half_cell,
+                    1e-6);
+        EXPECT_NEAR(below.v[i] - tree.quads[quad].v[lane], i / 2 == 0 ? -half_cell : half_cell,
+                    1e-6);
+      }
     }
   }
+}
+
+// Every centre has a slot of its own; siblings share a quad.
+TEST(Slots, AreAPermutationThatKeepsSiblingsTogether) {
+  for (const std::size_t count : {1u, 5u, 16u, 17u, 64u}) {
+    std::vector<std::size_t> sorted = slots_of_centers(count);
+    std::ranges::sort(sorted);
+    for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(sorted[i], i);
+  }
+  // The 4 x 4 grid row by row: two quads above two.
+  const std::vector<std::size_t> expected{0, 1, 4, 5, 2, 3, 6, 7, 8, 9, 12, 13, 10, 11, 14, 15};
+  EXPECT_EQ(slots_of_centers(16), expected);
 }
 
 }  // namespace

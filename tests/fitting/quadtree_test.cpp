@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "fitting/iwls/quadtree.h"
-
+#include "fitting/iwls/solver.h"
+#include "tests/fitting/reference_quadtree.h"
 #include "tests/fitting/samples_for_tests.h"
 
 #include <gtest/gtest.h>
@@ -25,6 +25,40 @@ std::vector<std::uint16_t> bits_of(const Representation& representation) {
   std::vector<std::uint16_t> bits;
   for (const Eigen::half value : model_of(representation).coefficients()) bits.push_back(value.x);
   return bits;
+}
+
+// Two implementations: sums that run, four nodes side by side, in single precision with the ridge -
+// and lists of samples, fitted anew by Eigen in double. Over scattered directions and along three
+// arcs, while the tree grows. A value is the sum of at most six halves below 2, each off by 2^-11,
+// averaged with weights; fits in single precision add less than a tenth of that.
+TEST(Quadtree, EqualsListsOfSamplesFittedAnew) {
+  for (const bool faithful : {false, true}) {
+    for (const int terms : faithful ? std::vector<int>{3} : std::vector<int>{1, 3, 6}) {
+      for (const int centers : {16, 64}) {
+        for (const Layout layout : {Layout::grid, Layout::jittered_disk}) {
+          const iwls::Options options{Construction::quadtree, layout, centers, terms, faithful};
+          const auto tree = make_iwls(options);
+          testing::ReferenceQuadtree reference(options);
+          const auto directions = scattered(300, 34);
+          for (std::size_t i = 0; i < directions.size(); ++i) {
+            const auto& x = directions[i];
+            tree->absorb(testing::one_sample(0, x, wavy(x.x(), x.y())));
+            reference.add(x.cast<float>(), wavy(x.x(), x.y()).cast<float>());
+            if (i != 0 && i != 2 && i != 20 && i != 80 && i + 1 != directions.size()) continue;
+            tree->finish();
+            reference.fit();
+            for (const auto& at : testing::disc_grid(8, 16)) {
+              const Eigen::Vector3f value = testing::colour_of(tree->light_field(), 0, at);
+              const Eigen::Vector3d expected = reference.colour(at.cast<double>());
+              const double scale = std::max(1.0, reference.largest_coefficient());
+              EXPECT_LT((value.cast<double>() - expected).cwiseAbs().maxCoeff(), 1.6e-3 * scale)
+                  << testing::text_of(options) << " after " << i + 1;
+            }
+          }
+        }
+      }
+    }
+  }
 }
 
 // Once every inner node holds more than 12 samples all leaves are finest: same nodes, same radius,
