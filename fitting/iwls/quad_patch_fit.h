@@ -34,9 +34,10 @@ class QuadPatchFit {
 
   /// Fits the leaves that hold the last sample, or all of them; `prior` is the patch's mean.
   SHEEN_INLINE FitOutcome refit(const double* prior, bool all) {
-    for (std::size_t quad = 0; quad < fit_.tree.quad_count; ++quad) {
-      // The root speaks always; without inner nodes all centres do.
-      speaks_[quad] = quad == 0 || fit_.tree.first_finest == 0;
+    // The root speaks always; without inner nodes all centres do.
+    const std::size_t speaking = fit_.tree.first_finest == 0 ? fit_.tree.quad_count : 1;
+    for (std::size_t quad = 0; quad < speaking; ++quad) {
+      speaks_[quad] = true;
       refit_all_[quad] = all;
       for (std::size_t i = 0; i < 3; ++i) prior_[quad][i] = static_cast<Real>(prior[i]);
     }
@@ -133,14 +134,20 @@ class QuadPatchFit {
   void fit_inner_leaves(std::size_t quad, LaneBits leaves) {
     L prior[3], polynomial[3 * kTerms];
     spread(prior_[quad], prior);
-    moments(quad).solve(fit_.rule, prior, polynomial);
-    outcome_.fits += static_cast<std::size_t>(__builtin_popcount(leaves & seen(quad)));
+    const LaneBits fitted = leaves & seen(quad);
+    if (fitted != 0) moments(quad).solve(fit_.rule, prior, polynomial);
+    outcome_.fits += static_cast<std::size_t>(__builtin_popcount(fitted));
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       if ((leaves >> lane & 1) == 0) continue;
-      if (fit_.rule.faithful && quad > 0 && (seen(quad) >> lane & 1) == 0) {
+      if ((fitted >> lane & 1) != 0) {
+        copy_down(quad, lane, polynomial, quad, lane);
+      } else if (inherits(quad)) {
         copy_from_parent(quad, lane);
       } else {
-        copy_down(quad, lane, polynomial, quad, lane);
+        const Below below = centers_below(quad, lane);
+        for (std::size_t i = 0; i < below.count; ++i) {
+          store_prior(below.first + i, prior, kAllLanes, refit_all_[quad]);
+        }
       }
     }
   }
@@ -160,21 +167,44 @@ class QuadPatchFit {
 
   SHEEN_INLINE void visit_finest(std::size_t quad) {
     const LaneBits empty = kAllLanes & ~seen(quad);
-    const LaneBits lanes = refit_all_[quad] ? kAllLanes : covering_[quad] | empty;
-    if (lanes == 0) return;
+    const LaneBits fitted = ~empty & (refit_all_[quad] ? kAllLanes : covering_[quad]);
     L prior[3];
     spread(prior_[quad], prior);
-    L polynomial[3 * kTerms] = {prior[0], prior[1], prior[2]};
-    const LaneBits fitted = lanes & ~empty;
-    // Lanes without samples take the prior: their moments need not be read.
-    if (fitted != 0) moments(quad).solve(fit_.rule, prior, polynomial);
-    outcome_.fits += static_cast<std::size_t>(__builtin_popcount(fitted));
-    const bool inherit = fit_.rule.faithful && quad > 0 && fit_.tree.first_finest > 0;
-    store(quad, polynomial, inherit ? fitted : lanes);
-    if (!inherit) return;
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      if ((lanes & empty) >> lane & 1) copy_from_parent(quad, lane);
+    if (fitted != 0) {
+      L polynomial[3 * kTerms];
+      moments(quad).solve(fit_.rule, prior, polynomial);
+      outcome_.fits += static_cast<std::size_t>(__builtin_popcount(fitted));
+      store(quad, polynomial, fitted);
     }
+    if (empty == 0) return;
+    if (!inherits(quad)) {
+      store_prior(quad, prior, empty, refit_all_[quad]);
+      return;
+    }
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if ((empty >> lane & 1) != 0) copy_from_parent(quad, lane);
+    }
+  }
+
+  // Whether empty leaves of the quad take their parent's polynomial.
+  [[nodiscard]] SHEEN_INLINE bool inherits(std::size_t quad) const {
+    return fit_.rule.faithful && quad > 0 && fit_.tree.first_finest > 0;
+  }
+
+  // Gives lanes without samples the prior. They all hold an older prior already, unless they were
+  // just handed over: when that is the same in half floats, nothing needs to be written.
+  SHEEN_INLINE void store_prior(std::size_t finest, const L* prior, LaneBits lanes, bool anew) {
+    if (!anew && holds_constant(finest, prior, lanes)) return;
+    L polynomial[3 * kTerms] = {prior[0], prior[1], prior[2]};
+    store(finest, polynomial, lanes);
+  }
+
+  [[nodiscard]] SHEEN_INLINE bool holds_constant(std::size_t finest, const L* prior,
+                                                 LaneBits lanes) const {
+    const std::uint16_t* const stored = coefficients(finest) + __builtin_ctz(lanes);
+    bool same = true;
+    for (std::size_t i = 0; i < 3; ++i) same &= stored[kLanes * i] == to_halves(prior[i])[0];
+    return same;
   }
 
   // Gives the centres below node (quad, lane) the polynomial of its parent, which is split and so
@@ -198,12 +228,22 @@ class QuadPatchFit {
       store_about(source, source_lane, p, quad, 1U << lane);
       return;
     }
-    std::size_t first = child(quad, lane);
-    std::size_t count = 1;
-    for (; first < fit_.tree.first_finest; first = child(first, 0)) count *= 4;
-    for (std::size_t i = first; i < first + count; ++i) {
-      store_about(source, source_lane, p, i, kAllLanes);
+    const Below below = centers_below(quad, lane);
+    for (std::size_t i = 0; i < below.count; ++i) {
+      store_about(source, source_lane, p, below.first + i, kAllLanes);
     }
+  }
+
+  struct Below {
+    std::size_t first, count;  // quads of centres
+  };
+
+  [[nodiscard]] SHEEN_INLINE Below centers_below(std::size_t quad, std::size_t lane) const {
+    Below below{child(quad, lane), 1};
+    for (; below.first < fit_.tree.first_finest; below.first = child(below.first, 0)) {
+      below.count *= 4;
+    }
+    return below;
   }
 
   void store_about(std::size_t source, std::size_t source_lane, const L* p, std::size_t finest,
@@ -259,7 +299,7 @@ class QuadPatchFit {
   const QuadPatch<Real>& patch_;
   LaneBits covering_[kMaxQuads] = {};    // lanes that hold the sample just gathered
   LaneBits just_split_[kMaxQuads] = {};  // lanes that it brought above the limit
-  bool speaks_[kMaxQuads];               // reached by splits
+  bool speaks_[kMaxQuads] = {};          // reached by splits
   bool refit_all_[kMaxQuads];
   Real prior_[kMaxQuads][3];
   FitOutcome outcome_{};
