@@ -93,9 +93,9 @@ void absorb(benchmark::State& state, Construction construction, bool faithful) {
   state.SetItemsProcessed(static_cast<std::int64_t>(samples));
 }
 
-// Reads, changes and writes the cache lines that the quadtree touches, and does nothing else: the
-// whole moments of the finest quads whose support holds a sample, one line of the inner ones, the
-// coefficients.
+// Reads, changes and writes, asked for ahead as the fit does, the cache lines that the quadtree
+// touches, and does nothing else: the whole moments of the finest quads whose support holds a
+// sample, one line of the inner ones, the coefficients.
 void memory_floor(benchmark::State& state) {
   using Rows = fitting::iwls::MomentRows<3>;
   constexpr std::size_t line = 16;  // floats
@@ -129,26 +129,34 @@ void memory_floor(benchmark::State& state) {
       touched[view].push_back(quads);
     }
   }
+  // Calls use(first float, count) for everything a sample touches.
+  const auto visit = [&](std::size_t patch, std::uint32_t quads, const auto& use) {
+    float* const m = moments.data() + patch * stride;
+    float* const c = coefficients.data() + patch * coefficient_stride;
+    for (std::size_t quad = 0; quad < tree.first_finest; ++quad) {
+      if (quads >> quad & 1) use(m + quad * quad_floats, line);
+    }
+    for (std::size_t quad = tree.first_finest; quad < tree.quad_count; ++quad) {
+      if ((quads >> quad & 1) == 0) continue;
+      use(m + quad * quad_floats, quad_floats);
+      use(c + (quad - tree.first_finest) * coefficient_floats, coefficient_floats);
+    }
+  };
+  const auto fetch = [](const float* from, std::size_t count) {
+    for (std::size_t i = 0; i < count; i += line) __builtin_prefetch(from + i, 1);
+  };
   const auto change = [](float* from, std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) from[i] += 1.0f;
   };
+  constexpr std::size_t ahead = 3;
   std::size_t view = 0;
   std::size_t samples = 0;
   for (auto _ : state) {
     const core::SampleBatch& batch = walk.view(view);
-    const auto& quads_of = touched[view++ % kWarmViews];
+    const auto& quads = touched[view++ % kWarmViews];
     for (std::size_t i = 0; i < batch.size(); ++i) {
-      const std::uint32_t quads = quads_of[i];
-      float* const m = moments.data() + batch.patch[i] * stride;
-      float* const c = coefficients.data() + batch.patch[i] * coefficient_stride;
-      for (std::size_t quad = 0; quad < tree.first_finest; ++quad) {
-        if (quads >> quad & 1) change(m + quad * quad_floats, line);
-      }
-      for (std::size_t quad = tree.first_finest; quad < tree.quad_count; ++quad) {
-        if ((quads >> quad & 1) == 0) continue;
-        change(m + quad * quad_floats, quad_floats);
-        change(c + (quad - tree.first_finest) * coefficient_floats, coefficient_floats);
-      }
+      if (i + ahead < batch.size()) visit(batch.patch[i + ahead], quads[i + ahead], fetch);
+      visit(batch.patch[i], quads[i], change);
     }
     benchmark::ClobberMemory();
     samples += batch.size();
@@ -208,11 +216,11 @@ void naive_refit(benchmark::State& state) {
 constexpr benchmark::TimeUnit kUnit = benchmark::kMillisecond;
 
 BENCHMARK_CAPTURE(absorb, quadtree, Construction::quadtree, false)
-    ->ArgsProduct({{31000, 150000}, {16, 64}})
+    ->ArgsProduct({{4000, 31000, 150000}, {16, 64}})
     ->ArgNames({"patches", "centers"})
     ->Unit(kUnit);
 BENCHMARK(memory_floor)
-    ->ArgsProduct({{31000, 150000}, {16, 64}})
+    ->ArgsProduct({{4000, 31000, 150000}, {16, 64}})
     ->ArgNames({"patches", "centers"})
     ->Unit(kUnit);
 BENCHMARK_CAPTURE(absorb, batch, Construction::batch, false)
