@@ -14,6 +14,7 @@
 #include "capture/pose/trajectory.h"
 #include "core/diagnostics/error.h"
 #include "core/mesh/neighbours.h"
+#include "core/visibility/raster_visibility.h"
 #include "core/visibility/ray_visibility.h"
 #include "fitting/model_file/model_file.h"
 #include "fitting/registry.h"
@@ -129,8 +130,10 @@ struct ChosenVisibility {
     if (choice == VisibilityMethod::depth) {
       gl = render::make_osmesa_context();
       method = render::make_depth_visibility(*gl, mesh);
-    } else {
+    } else if (choice == VisibilityMethod::rays) {
       method = core::make_ray_visibility(mesh, threads);
+    } else {
+      method = core::make_raster_visibility(mesh, threads);
     }
   }
 };

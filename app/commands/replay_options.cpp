@@ -22,7 +22,9 @@ const std::map<std::string, iwls::Layout> kLayouts{{"grid", iwls::Layout::grid},
                                                    {"disk", iwls::Layout::disk},
                                                    {"jittered-disk", iwls::Layout::jittered_disk}};
 const std::map<std::string, int> kTerms{{"1", 1}, {"3", 3}, {"6", 6}, {"auto", 0}};
-const std::map<std::string, VisibilityMethod> kVisibilities{{"rays", VisibilityMethod::rays},
+const std::map<std::string, VisibilityMethod> kVisibilities{{"auto", VisibilityMethod::automatic},
+                                                            {"raster", VisibilityMethod::raster},
+                                                            {"rays", VisibilityMethod::rays},
                                                             {"depth", VisibilityMethod::depth}};
 
 template <typename Value>

@@ -15,8 +15,8 @@
 
 namespace sheen::app {
 
-/// Which of the agreeing implementations finds hidden vertices.
-enum class VisibilityMethod { rays, depth };
+/// Which of the agreeing implementations finds hidden vertices; `automatic` is the fastest.
+enum class VisibilityMethod { automatic, raster, rays, depth };
 
 /// Everything `sheen replay` may be asked.
 struct ReplayOptions {
@@ -30,7 +30,7 @@ struct ReplayOptions {
   double texel_px = 1.5;               ///< longest edge between texel patches, pixels, > 0
   fitting::iwls::Options iwls;         ///< for every fitter but sparse
   fitting::sparse::Options sparse;     ///< for the sparse fitter
-  VisibilityMethod visibility = VisibilityMethod::rays;
+  VisibilityMethod visibility = VisibilityMethod::automatic;
   core::SamplingLimits limits;
   PhotometricOptions photometric;
   bool refine_board = false;  ///< refine the tags' places before their poses are used

@@ -4,7 +4,7 @@
 #include "app/pipeline/check_seen.h"
 #include "app/pipeline/pipeline.h"
 #include "core/diagnostics/error.h"
-#include "core/visibility/ray_visibility.h"
+#include "core/visibility/raster_visibility.h"
 #include "fitting/registry.h"
 
 #include <utility>
@@ -69,7 +69,7 @@ Observations observe_session(const SessionOptions& options, int threads,
   PoseStage poses(capture::open_frames(session, options.start, options.end),
                   make_pose_estimator(session, options.pose_source, options.gate));
   SharedModel model(recorder);
-  ModelStage stage({.visibility = core::make_ray_visibility(observations.mesh, threads),
+  ModelStage stage({.visibility = core::make_raster_visibility(observations.mesh, threads),
                     .mesh = observations.mesh,
                     .camera = session.camera,
                     .stage_from_object = session.stage_from_object,

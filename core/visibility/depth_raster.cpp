@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include "core/visibility/depth_raster.h"
+
+#include "core/concurrency/parallel_for.h"
+
+#include <algorithm>
+#include <atomic>
+
+namespace sheen::core {
+
+DepthRaster::DepthRaster(const Mesh& mesh, int threads, const RasterKernels& kernels)
+    : clusters_(mesh),
+      threads_(std::max(1, threads)),
+      kernels_(kernels),
+      vertices_(mesh.positions.size()),
+      maps_(static_cast<std::size_t>(threads_)) {}
+
+bool DepthRaster::draw(const VertexView& view, const Eigen::Vector3f& eye, const PixelBox& box) {
+  left_px_ = static_cast<float>(box.left);
+  top_px_ = static_cast<float>(box.top);
+  width_px_ = box.right - box.left + 1;
+  height_px_ = box.bottom - box.top + 1;
+  row_ = static_cast<std::size_t>(width_px_) + DepthMap::kPadding;
+  pack(view);
+
+  // Every thread draws its share of the clusters into a map of its own. The nearest wins in any
+  // order, so neither the share nor the map that a share meets shows in the result.
+  std::vector<LargeTriangle> noted(maps_.size() * kMostLarge);
+  std::vector<std::size_t> noted_counts(maps_.size(), 0);
+  std::atomic<std::size_t> shares = 0;
+  parallel_for(clusters_.size(), threads_, [&](std::size_t begin, std::size_t end) {
+    const std::size_t share = shares++;
+    LargeTriangles large{noted.data() + share * kMostLarge, kMostLarge, 0};
+    draw_clusters(begin, end, eye, maps_[share], large);
+    noted_counts[share] = large.count;
+  });
+  merge(shares);
+
+  // Hand over what was noted, unless it is too much in all.
+  large_.clear();
+  std::size_t total = 0;
+  for (const std::size_t count : noted_counts) total += count;
+  if (total > kMostLarge) return false;
+  for (std::size_t share = 0; share < shares; ++share) {
+    const auto first = noted.begin() + static_cast<std::ptrdiff_t>(share * kMostLarge);
+    large_.insert(large_.end(), first, first + static_cast<std::ptrdiff_t>(noted_counts[share]));
+  }
+  return true;
+}
+
+void DepthRaster::pack(const VertexView& view) {
+  parallel_for(vertices_.size(), threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      vertices_[i].x = view.x_px[i] - left_px_;
+      vertices_[i].y = view.y_px[i] - top_px_;
+      vertices_[i].nearness = view.depth_m[i] > 0.0f ? 1.0f / view.depth_m[i] : 0.0f;
+    }
+  });
+}
+
+void DepthRaster::draw_clusters(std::size_t begin, std::size_t end, const Eigen::Vector3f& eye,
+                                std::vector<float>& map, LargeTriangles& large) const {
+  map.assign(row_ * static_cast<std::size_t>(height_px_), 0.0f);
+  const DepthMap target{map.data(), width_px_, height_px_, row_};
+  for (std::size_t cluster = begin; cluster < end; ++cluster) {
+    if (clusters_.faces_away(cluster, eye)) continue;
+    kernels_.draw(vertices_.data(),
+                  {clusters_.corners(cluster, 0), clusters_.corners(cluster, 1),
+                   clusters_.corners(cluster, 2), TriangleClusters::kTriangles},
+                  kLarge_px, target, large);
+  }
+}
+
+void DepthRaster::merge(std::size_t maps) {
+  if (maps == 0) maps_.front().assign(row_ * static_cast<std::size_t>(height_px_), 0.0f);
+  std::vector<float>& merged = maps_.front();
+  parallel_for(merged.size(), threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t other = 1; other < maps; ++other) {
+      const std::vector<float>& map = maps_[other];
+      for (std::size_t i = begin; i < end; ++i) merged[i] = std::max(merged[i], map[i]);
+    }
+  });
+}
+
+}  // namespace sheen::core

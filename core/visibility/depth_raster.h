@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "core/samples/vertex_view.h"
+#include "core/visibility/raster_kernels.h"
+#include "core/visibility/triangle_clusters.h"
+
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+namespace sheen::core {
+
+/// Rectangle of pixels of the picture, both ends included.
+struct PixelBox {
+  int left = 0, top = 0, right = -1, bottom = -1;
+};
+
+/// Draws the nearness (1 / depth) of a mesh's nearest fronts. Keeps its storage from view to view.
+class DepthRaster {
+ public:
+  DepthRaster(const Mesh& mesh, int threads, const RasterKernels& kernels);
+
+  /// Draws the part of the picture that `box` holds, of a view from `eye` (object frame, metres).
+  /// False where too many triangles are large: then nothing is promised.
+  bool draw(const VertexView& view, const Eigen::Vector3f& eye, const PixelBox& box);
+
+  /// Drawn triangles wider or higher than kLarge_px, and all with a corner that has no pixel.
+  [[nodiscard]] const std::vector<LargeTriangle>& large_triangles() const { return large_; }
+
+  /// Least and greatest nearness of the four pixels around a position within the box.
+  struct Range {
+    float least, greatest;
+  };
+  [[nodiscard]] Range around(float x_px, float y_px) const {
+    const float x = x_px - left_px_;
+    const float y = y_px - top_px_;
+    const float* upper =
+        maps_.front().data() + static_cast<std::size_t>(y) * row_ + static_cast<std::size_t>(x);
+    const float* lower = upper + row_;
+    const auto [upper_least, upper_greatest] = std::minmax(upper[0], upper[1]);
+    const auto [lower_least, lower_greatest] = std::minmax(lower[0], lower[1]);
+    return {std::min(upper_least, lower_least), std::max(upper_greatest, lower_greatest)};
+  }
+
+ private:
+  static constexpr float kLarge_px = 24.0f;
+  static constexpr std::size_t kMostLarge = 256;
+
+  void pack(const VertexView& view);
+  void draw_clusters(std::size_t begin, std::size_t end, const Eigen::Vector3f& eye,
+                     std::vector<float>& map, LargeTriangles& large) const;
+  void merge(std::size_t maps);
+
+  TriangleClusters clusters_;
+  int threads_;
+  RasterKernels kernels_;
+  std::vector<RasterVertex> vertices_;
+  std::vector<std::vector<float>> maps_;  ///< one per thread, merged into the first
+  std::vector<LargeTriangle> large_;
+  float left_px_ = 0, top_px_ = 0;
+  std::int32_t width_px_ = 0, height_px_ = 0;
+  std::size_t row_ = 0;
+};
+
+}  // namespace sheen::core
