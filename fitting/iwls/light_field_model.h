@@ -57,7 +57,10 @@ class LightFieldModel final : public LightField {
     return coefficients().subspan(patch_idx * per_patch_, per_patch_);
   }
   [[nodiscard]] std::size_t coefficients_per_patch() const { return per_patch_; }
-  /// The same for the fit, as bits.
+  /// Positions of the slots; those without a centre stand where no support reaches.
+  [[nodiscard]] std::span<const float> slots_u() const { return u_; }
+  [[nodiscard]] std::span<const float> slots_v() const { return v_; }
+  /// Coefficients of a patch for the fit, as bits.
   [[nodiscard]] std::uint16_t* slots_of(std::size_t patch_idx) {
     return &coefficients_.data()[patch_idx * per_patch_].x;
   }

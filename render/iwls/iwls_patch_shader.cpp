@@ -5,10 +5,12 @@
 #include "render/shaders/shader_text.h"
 #include "render/surface/patch_buffer.h"
 
+#include <algorithm>
 #include <cassert>
 #include <iomanip>
 #include <limits>
 #include <locale>
+#include <span>
 #include <sstream>
 
 namespace sheen::render::iwls {
@@ -16,11 +18,21 @@ namespace {
 
 using fitting::iwls::LightFieldModel;
 
-/// One texel per centre and term: r, g, b, and in the patch's first texel the weight.
+void write_list(std::ostream& text, std::span<const float> slots, const char* name) {
+  text << "const vec4 " << name << "[QUADS] = vec4[QUADS](";
+  for (std::size_t i = 0; i < slots.size(); i += 4) {
+    text << (i == 0 ? "vec4(" : ", vec4(") << slots[i] << ", " << slots[i + 1] << ", "
+         << slots[i + 2] << ", " << slots[i + 3] << ")";
+  }
+  text << ");\n";
+}
+
+/// The model's coefficients as they lie in memory, four centres to a texel, behind one texel with
+/// the weight of the patch.
 class IwlsPatchShader final : public PatchShader {
  public:
   IwlsPatchShader(const gl::Functions& gl, const LightFieldModel& model)
-      : model_(model), buffer_(gl, model.patch_count(), model.coefficients_per_patch() / 3) {
+      : model_(model), buffer_(gl, model.patch_count(), 1 + model.coefficients_per_patch() / 4) {
     upload(all_patches(model.patch_count()));
   }
 
@@ -30,21 +42,19 @@ class IwlsPatchShader final : public PatchShader {
     std::ostringstream text;
     text.imbue(std::locale::classic());
     text << std::scientific << std::setprecision(std::numeric_limits<float>::max_digits10);
-    text << "#define CENTRES " << shape.centers.size() << "\n#define TERMS " << shape.terms
-         << "\n#define SUPPORT " << shape.support_radius
-         << "\nconst vec2 centre_positions[CENTRES] = vec2[CENTRES](";
-    const char* separator = "";
-    for (const Eigen::Vector2f& centre : shape.centers) {
-      text << separator << "vec2(" << centre.x() << ", " << centre.y() << ")";
-      separator = ", ";
-    }
-    text << ");\n" << shader_text("iwls/iwls.glsl");
+    text << "#define QUADS " << model_.slots_u().size() / 4 << "\n#define TERMS " << shape.terms
+         << "\n#define INVERSE_SUPPORT " << 1.0f / shape.support_radius << "\n";
+    write_list(text, model_.slots_u(), "centre_u");
+    write_list(text, model_.slots_v(), "centre_v");
+    text << shader_text("iwls/iwls.glsl");
     return text.str();
   }
 
   std::size_t upload(std::span<const std::uint32_t> patches) override {
     return buffer_.upload(patches, [this](std::size_t patch_idx, std::span<Eigen::half> texels) {
-      write_colours(model_.coefficients(patch_idx), model_.observed()[patch_idx] != 0, texels);
+      const bool observed = model_.observed()[patch_idx] != 0;
+      std::ranges::fill(texels.first(4), Eigen::half(observed ? 1.0f : fitting::kUnseenWeight));
+      std::ranges::copy(model_.coefficients(patch_idx), texels.subspan(4).begin());
     });
   }
 

@@ -54,11 +54,11 @@ TEST(PatchShader, SendsNeighbouringPatchesTogetherAndNothingElse) {
   const auto model = testing::random_iwls(Layout::grid, 16, 3, 100, 0);
   const auto shader = make_patch_shader(gl, model);
 
-  // 16 centres x 3 terms x 4 halfs of 2 bytes: 384 bytes per patch.
+  // 16 centres x 3 terms x 3 channels x 2 bytes behind a texel of 8: 296 bytes per patch.
   sent.clear();
-  EXPECT_EQ(shader->upload(std::array<std::uint32_t, 6>{0, 1, 7, 8, 9, 99}), 6u * 384u);
+  EXPECT_EQ(shader->upload(std::array<std::uint32_t, 6>{0, 1, 7, 8, 9, 99}), 6u * 296u);
   const std::vector<std::array<std::size_t, 2>> expected{
-      {0, 2 * 384}, {7 * 384, 3 * 384}, {99 * 384, 384}};
+      {0, 2 * 296}, {7 * 296, 3 * 296}, {99 * 296, 296}};
   EXPECT_EQ(sent, expected);
 
   sent.clear();
