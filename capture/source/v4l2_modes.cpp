@@ -112,6 +112,17 @@ int bytes_rank(PixelFormat format) {
   return 3;
 }
 
+/// Undoes what an earlier program may have left: a part of the picture cut out or drawn smaller.
+/// Most cameras know nothing of this, which is as good.
+void reset_selection(const V4l2Device& device, __u32 target, __u32 whole) {
+  v4l2_selection selection{};
+  selection.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
+  selection.target = whole;
+  if (device.request(VIDIOC_G_SELECTION, &selection) != 0) return;
+  selection.target = target;
+  static_cast<void>(device.request(VIDIOC_S_SELECTION, &selection));
+}
+
 double set_rate(const V4l2Device& device, double fps) {
   v4l2_streamparm wanted{};
   wanted.type = V4L2_BUF_TYPE_VIDEO_CAPTURE;
@@ -237,7 +248,9 @@ ActiveMode set_mode(const V4l2Device& device, const CameraMode& mode) {
   format.fmt.pix.height = static_cast<__u32>(mode.size.height_px);
   format.fmt.pix.pixelformat = fourcc(mode.format);
   format.fmt.pix.field = V4L2_FIELD_NONE;
+  reset_selection(device, V4L2_SEL_TGT_CROP, V4L2_SEL_TGT_CROP_DEFAULT);
   device.require(VIDIOC_S_FMT, &format, "setting the picture format");
+  reset_selection(device, V4L2_SEL_TGT_COMPOSE, V4L2_SEL_TGT_COMPOSE_DEFAULT);
   check_mode(device, format.fmt.pix, mode);
 
   const double fps = set_rate(device, mode.fps);
