@@ -8,6 +8,7 @@ namespace sheen::app {
 namespace {
 
 std::atomic<bool> interrupted{false};
+std::atomic<bool> only_finishes{false};
 static_assert(std::atomic<bool>::is_always_lock_free, "the flag is set by a signal handler");
 
 void raise_flag(int signal) {
@@ -24,7 +25,19 @@ void watch_for_interrupts() {
 }
 
 void throw_if_interrupted() {
-  if (interrupted) throw Interrupted();
+  if (interrupted && !only_finishes) throw Interrupted();
+}
+
+FinishOnInterrupt::FinishOnInterrupt() {
+  only_finishes = true;
+}
+
+FinishOnInterrupt::~FinishOnInterrupt() {
+  only_finishes = false;
+}
+
+bool FinishOnInterrupt::wants_to_finish() {
+  return interrupted;
 }
 
 }  // namespace sheen::app

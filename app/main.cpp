@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/board.h"
+#include "app/commands/capture.h"
 #include "app/commands/compare.h"
 #include "app/commands/evaluate.h"
 #include "app/commands/info.h"
@@ -45,6 +46,7 @@ int main(int argc, char** argv) {
       "Exit codes: 0 done, 1 failed while running, 2 bad arguments or bad input.");
   app::CommandContext context;
   app::add_board_command(program, context);
+  app::add_capture_command(program, context);
   app::add_replay_command(program, context);
   app::add_render_command(program, context);
   app::add_evaluate_command(program, context);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/replay.h"
 
-#include "app/commands/replay_options.h"
 #include "app/evaluation/evaluate_views.h"
 #include "app/evaluation/posed_views.h"
 #include "app/pipeline/check_seen.h"
@@ -188,10 +187,21 @@ void run_replay(const ReplayOptions& options, const CommandContext& context) {
   context.check_outputs({options.output, options.mean_output, options.poses_output});
   const capture::Session session = capture::open_session(options.session.folder);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
+  auto frames = capture::open_frames(session, options.session.start, options.session.end);
   const auto refinement = refine_board(session, options, context);
+
+  const FitOutcome outcome = fit_session(options, session, refinement, std::move(frames), context);
+  context.publish(outcome.document, outcome.text);
+}
+
+}  // namespace
+
+FitOutcome fit_session(const ReplayOptions& options, const capture::Session& session,
+                       const std::optional<capture::BoardRefinement>& refinement,
+                       std::unique_ptr<capture::FrameSource> frames,
+                       const CommandContext& context) {
   const capture::Board* const board = refinement ? &refinement->board : nullptr;
   const core::Mesh mesh = read_patch_mesh(session, options, board);
-  auto frames = capture::open_frames(session, options.session.start, options.session.end);
   const std::optional<int> frame_count = frames->frame_count();
   ChosenVisibility visibility(options.visibility, mesh, context.threads);
 
@@ -219,10 +229,8 @@ void run_replay(const ReplayOptions& options, const CommandContext& context) {
   ReplayReport report = describe(options, fields, stage.statistics(), timer);
   report.board = refinement;
   add_held_out(options, session, mesh, fields, stage, context, report);
-  context.publish(to_json(report), to_text(report) + "written  " + options.output.string() + "\n");
+  return {to_json(report), to_text(report) + "written  " + options.output.string() + "\n"};
 }
-
-}  // namespace
 
 void add_replay_command(CLI::App& program, CommandContext& context) {
   auto options = std::make_shared<ReplayOptions>();

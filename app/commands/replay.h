@@ -2,8 +2,28 @@
 #pragma once
 
 #include "app/commands/command_context.h"
+#include "app/commands/replay_options.h"
+#include "capture/pose/board_refinement.h"
+#include "capture/session/session.h"
+#include "capture/source/frame_source.h"
+
+#include <memory>
+#include <optional>
+#include <string>
 
 namespace sheen::app {
+
+/// What a fit has to say at its end: as JSON and for people.
+struct FitOutcome {
+  nlohmann::ordered_json document;
+  std::string text;
+};
+
+/// Fits `frames` of a session, saves the model and measures it on held-out frames. `refinement`
+/// replaces the session's board.
+FitOutcome fit_session(const ReplayOptions& options, const capture::Session& session,
+                       const std::optional<capture::BoardRefinement>& refinement,
+                       std::unique_ptr<capture::FrameSource> frames, const CommandContext& context);
 
 /// `sheen replay SESSION -o MODEL.glb`: a recording becomes a light field.
 void add_replay_command(CLI::App& program, CommandContext& context);

@@ -92,8 +92,31 @@ std::string ReplayOptions::registered_name() const {
   return representation == "iwls" && fitter == kSparse ? kSparse : representation;
 }
 
-void add_replay_options(CLI::App& command, ReplayOptions& options) {
+void add_model_options(CLI::App& command, ReplayOptions& options) {
   options.representation = "iwls";
+  command.add_option("--representation", options.representation, "How patches are modelled")
+      ->check(CLI::IsMember(fitting::representation_names()))
+      ->capture_default_str();
+  add_fitter_options(command, options);
+  add_choice(command, "--visibility", options.visibility, kVisibilities,
+             "How hidden vertices are found");
+  command
+      .add_option("--min-cosine", options.limits.min_cosine,
+                  "Refuse samples seen at a smaller cosine to the normal")
+      ->check(CLI::Range(0.0, 0.99))
+      ->capture_default_str();
+  command.add_flag("--refine-poses,!--no-refine-poses", options.photometric.refine_poses,
+                   "Refine every pose photometrically against the model that is being built");
+  command
+      .add_option("--pose-error", options.photometric.pose_error_px,
+                  "With --refine-poses: error to expect of the given poses, pixels on the object")
+      ->check(CLI::Range(0.01, 10.0))
+      ->capture_default_str();
+  command.add_flag("--exposure,!--no-exposure", options.photometric.exposure,
+                   "Estimate every frame's exposure against the model and take it out");
+}
+
+void add_replay_options(CLI::App& command, ReplayOptions& options) {
   command.add_option("session", options.session.folder, "Session folder")->required();
   command.add_option("-o,--output", options.output, "Model to write (.glb)")
       ->required()
@@ -103,10 +126,7 @@ void add_replay_options(CLI::App& command, ReplayOptions& options) {
           },
           ""))
       ->type_name("MODEL.glb");
-  command.add_option("--representation", options.representation, "How patches are modelled")
-      ->check(CLI::IsMember(fitting::representation_names()))
-      ->capture_default_str();
-  add_fitter_options(command, options);
+  add_model_options(command, options);
   command
       .add_option("--patches", options.patches,
                   "vertex: one patch per vertex; texel: as fine as the pictures resolve")
@@ -123,24 +143,8 @@ void add_replay_options(CLI::App& command, ReplayOptions& options) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   add_session_options(command, options.session);
-  add_choice(command, "--visibility", options.visibility, kVisibilities,
-             "How hidden vertices are found");
-  command
-      .add_option("--min-cosine", options.limits.min_cosine,
-                  "Refuse samples seen at a smaller cosine to the normal")
-      ->check(CLI::Range(0.0, 0.99))
-      ->capture_default_str();
-  command.add_flag("--refine-poses,!--no-refine-poses", options.photometric.refine_poses,
-                   "Refine every pose photometrically against the model that is being built");
-  command
-      .add_option("--pose-error", options.photometric.pose_error_px,
-                  "With --refine-poses: error to expect of the given poses, pixels on the object")
-      ->check(CLI::Range(0.01, 10.0))
-      ->capture_default_str();
   command.add_flag("--refine-board", options.refine_board,
                    "Refine where the tags lie from the whole recording before posing frames");
-  command.add_flag("--exposure,!--no-exposure", options.photometric.exposure,
-                   "Estimate every frame's exposure against the model and take it out");
   command
       .add_option("--mean-out", options.mean_output,
                   "Also save the mean colours, what a textured mesh would show")

@@ -39,6 +39,9 @@ struct ReplayOptions {
   [[nodiscard]] std::string registered_name() const;
 };
 
+/// The part of them that says what becomes of frames, live ones too.
+void add_model_options(CLI::App& command, ReplayOptions& options);
+
 void add_replay_options(CLI::App& command, ReplayOptions& options);
 
 /// The options as they stand in reports.

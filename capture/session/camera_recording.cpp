@@ -62,8 +62,8 @@ class LiveFrames : public FrameSource {
 };
 
 CameraRecording::CameraRecording(std::unique_ptr<Camera> camera, SessionRecorder& recorder,
-                                 const RecordingLimits& limits)
-    : camera_(std::move(camera)), recorder_(recorder), limits_(limits) {
+                                 RecordingTerms terms)
+    : camera_(std::move(camera)), recorder_(recorder), terms_(std::move(terms)) {
   status_.description = camera_->description();
   thread_ = std::jthread([this](const std::stop_token& stop) { record(stop); });
 }
@@ -113,10 +113,11 @@ void CameraRecording::record(const std::stop_token& stop) {
 }
 
 bool CameraRecording::is_over() const {
+  if (terms_.is_enough && terms_.is_enough()) return true;
   const std::lock_guard lock(mutex_);
-  const bool has_all = limits_.frames && status_.taken >= *limits_.frames;
+  const bool has_all = terms_.frames && status_.taken >= *terms_.frames;
   return has_all ||
-         (limits_.seconds && latest_.jpeg && stamp_seconds(latest_.time_us) >= *limits_.seconds);
+         (terms_.seconds && latest_.jpeg && stamp_seconds(latest_.time_us) >= *terms_.seconds);
 }
 
 void CameraRecording::take(const CameraBuffer& buffer) {
@@ -134,19 +135,27 @@ void CameraRecording::take(const CameraBuffer& buffer) {
   const LivePicture picture{std::make_shared<const std::vector<std::uint8_t>>(std::move(jpeg)),
                             last_us_, buffer.sequence};
   const bool is_recorded = recorder_.add(picture);
-  const bool has_fault = !is_recorded && recorder_.fault().has_value();
+  const bool has_fault = report_disk_fault();
 
   const std::lock_guard lock(mutex_);
   ++status_.taken;
   status_.camera = camera_->counts();
   latest_ = picture;
-  if (has_fault) {
+  if (has_fault && !is_recorded) {
     unrecorded_.push_back(picture);
     if (unrecorded_.size() > kMostUnrecorded) unrecorded_.pop_front();
     has_unrecorded_.notify_all();
   } else if (!is_recorded) {
     ++status_.dropped;
   }
+}
+
+bool CameraRecording::report_disk_fault() {
+  const auto fault = recorder_.fault();
+  if (!fault) return false;
+  if (!has_disk_fault_ && terms_.on_disk_fault) terms_.on_disk_fault(*fault);
+  has_disk_fault_ = true;
+  return true;
 }
 
 std::optional<LivePicture> CameraRecording::next_unrecorded() {

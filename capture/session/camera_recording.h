@@ -9,6 +9,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -16,10 +17,13 @@
 
 namespace sheen::capture {
 
-/// When a recording ends by itself.
-struct RecordingLimits {
-  std::optional<int> frames;      ///< after this many pictures, >= 1
-  std::optional<double> seconds;  ///< this long after the first picture, > 0
+/// When a recording ends by itself, and who hears of a disk that is full. Both functions are called
+/// on the recording's thread and must not wait; they may be empty.
+struct RecordingTerms {
+  std::optional<int> frames;      ///< ends after this many pictures, >= 1
+  std::optional<double> seconds;  ///< ends this long after the first picture, > 0
+  std::function<bool()> is_enough;
+  std::function<void(const core::Error&)> on_disk_fault;
 };
 
 /// How a recording stands.
@@ -40,8 +44,7 @@ struct RecordingStatus {
 class CameraRecording {
  public:
   /// The recorder is borrowed.
-  CameraRecording(std::unique_ptr<Camera> camera, SessionRecorder& recorder,
-                  const RecordingLimits& limits);
+  CameraRecording(std::unique_ptr<Camera> camera, SessionRecorder& recorder, RecordingTerms terms);
   ~CameraRecording();
   CameraRecording(const CameraRecording&) = delete;
   CameraRecording& operator=(const CameraRecording&) = delete;
@@ -67,14 +70,16 @@ class CameraRecording {
   void record(const std::stop_token& stop);
   void take(const CameraBuffer& buffer);
   [[nodiscard]] bool is_over() const;
+  bool report_disk_fault();
   std::optional<LivePicture> next_unrecorded();
 
   std::unique_ptr<Camera> camera_;
   SessionRecorder& recorder_;
-  RecordingLimits limits_;
+  RecordingTerms terms_;
   JpegEncoder encoder_;
   std::optional<double> first_s_;  ///< these two: of the first and last picture
   std::int64_t last_us_ = 0;
+  bool has_disk_fault_ = false;
 
   mutable std::mutex mutex_;
   std::condition_variable has_unrecorded_;

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+#include "app/commands/capture.h"
+
+#include "app/commands/camera_list.h"
+#include "app/commands/replay.h"
+#include "app/interrupt.h"
+#include "capture/session/camera_recording.h"
+#include "capture/session/session.h"
+#include "core/diagnostics/error.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace sheen::app {
+namespace {
+
+std::string size_text(int width_px, int height_px) {
+  return fmt::format("{}x{}", width_px, height_px);
+}
+
+void check_size(const capture::CameraDescription& camera, const core::CameraModel& model) {
+  if (camera.width_px == model.width_px() && camera.height_px == model.height_px()) return;
+  throw core::bad_input(camera.device,
+                        fmt::format("delivers {} but the camera file is for {}",
+                                    size_text(camera.width_px, camera.height_px),
+                                    size_text(model.width_px(), model.height_px())),
+                        "choose that --size or calibrate at this one");
+}
+
+capture::RecordingTerms terms_of(const CaptureOptions& options, const CommandContext& context) {
+  return {.frames = options.frames,
+          .seconds = options.seconds,
+          .is_enough = [] { return FinishOnInterrupt::wants_to_finish(); },
+          .on_disk_fault = [&context](const core::Error& fault) { context.note(fault.what()); }};
+}
+
+nlohmann::ordered_json to_json(const CaptureOptions& options,
+                               const capture::RecordingStatus& status) {
+  return {{"session", options.session.string()},
+          {"device", status.description.device},
+          {"camera", status.description.name},
+          {"taken", status.taken},
+          {"recorded", status.recorded},
+          {"lost", status.camera.lost},
+          {"damaged", status.camera.damaged + status.unreadable},
+          {"dropped", status.dropped},
+          {"reconnections", status.camera.reconnections},
+          {"complete", !status.disk_fault && !status.camera_fault}};
+}
+
+std::string to_text(const CaptureOptions& options, const capture::RecordingStatus& status) {
+  std::string text = fmt::format("recorded {} of {} pictures from {}", status.recorded,
+                                 status.taken, status.description.name);
+  const std::pair<int, const char*> troubles[] = {
+      {status.camera.lost, "lost by the camera"},
+      {status.camera.damaged + status.unreadable, "damaged"},
+      {status.dropped, "dropped, the disk was too slow"},
+      {status.camera.reconnections, "reconnections"}};
+  for (const auto& [count, name] : troubles) {
+    if (count > 0) text += fmt::format(", {} {}", count, name);
+  }
+  return text + fmt::format("\nsession  {}\n", options.session.string());
+}
+
+void run_capture(const CaptureOptions& options, const CommandContext& context) {
+  if (options.list) return list_cameras(context);
+  if (options.session.empty()) throw CLI::RequiredError("--output");
+  capture::V4l2CameraOptions wish = options.camera;
+  const core::CameraModel model = read_setup(options).camera;
+  if (!wish.mode.size) wish.mode.size = capture::PictureSize{model.width_px(), model.height_px()};
+  capture_session(std::make_unique<capture::V4l2Camera>(capture::kernel_v4l2_system(), wish),
+                  options, context);
+}
+
+}  // namespace
+
+void capture_session(std::unique_ptr<capture::Camera> camera, const CaptureOptions& options,
+                     const CommandContext& context) {
+  // Start recording.
+  ReplayOptions fit = options.fit;
+  fit.session.folder = options.session;
+  if (fit.output.empty()) fit.output = options.session / "model.glb";
+  const capture::SessionSetup setup = read_setup(options);
+  const capture::CameraDescription description = camera->description();
+  check_size(description, setup.camera);
+  capture::SessionRecorder recorder(options.session, setup, description.fps);
+  const capture::Session session = capture::open_session(options.session);
+  context.check_outputs({fit.output});
+  const FinishOnInterrupt finishing;
+  capture::CameraRecording recording(std::move(camera), recorder, terms_of(options, context));
+
+  // Fit what comes; a camera that failed says more than that there was nothing to fit.
+  FitOutcome outcome;
+  try {
+    outcome = fit_session(fit, session, std::nullopt, recording.frames(), context);
+  } catch (const core::Error&) {
+    recording.stop();
+    if (const auto fault = recording.status().camera_fault) throw core::Error(*fault);
+    throw;
+  }
+  const capture::RecordingStatus status = recording.status();
+  outcome.document["recording"] = to_json(options, status);
+  context.publish(outcome.document, to_text(options, status) + outcome.text);
+  if (status.camera_fault) throw core::Error(*status.camera_fault);
+  if (status.disk_fault) throw core::Error(*status.disk_fault);
+}
+
+void add_capture_command(CLI::App& program, CommandContext& context) {
+  auto options = std::make_shared<CaptureOptions>();
+  CLI::App* command =
+      program.add_subcommand("capture", "Record an object live and turn it into a light field");
+  command->footer(
+      "Example: walk round the object until Ctrl-C, with the stage of an earlier session:\n"
+      "  sheen capture /dev/video0 -o knot --like sample_data/glossy --headless");
+  add_capture_options(*command, *options);
+  add_common_options(*command, context);
+  command->callback([options, &context] { run_capture(*options, context); });
+}
+
+}  // namespace sheen::app

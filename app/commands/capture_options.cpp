@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "app/commands/capture_options.h"
+
+#include "capture/calibration/camera_file.h"
+#include "capture/session/session.h"
+#include "core/diagnostics/error.h"
+
+#include <Eigen/SVD>
+
+#include <charconv>
+#include <map>
+#include <utility>
+
+namespace sheen::app {
+namespace {
+
+std::optional<int> parse_int(std::string_view text) {
+  int number = 0;
+  const auto [stop, status] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (status != std::errc() || stop != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+void add_camera_options(CLI::App& command, CaptureOptions& options) {
+  using capture::PixelFormat;
+  command.add_option("device", options.camera.device, "Camera")->capture_default_str();
+  command.add_flag("--list", options.list, "List cameras, their modes and controls");
+  command
+      .add_option_function<std::string>(
+          "--size",
+          [&options](const std::string& text) {
+            const std::size_t x = text.find('x');
+            const auto width = parse_int(std::string_view(text).substr(0, x));
+            const auto height = x == std::string::npos
+                                    ? std::nullopt
+                                    : parse_int(std::string_view(text).substr(x + 1));
+            if (!width || !height) throw CLI::ValidationError("--size", "write it like 1280x720");
+            options.camera.mode.size = capture::PictureSize{*width, *height};
+          },
+          "Picture size (default: that of the camera file)")
+      ->type_name("WxH");
+  command
+      .add_option("--fps", options.camera.mode.fps, "Frame rate (default: the camera's largest)")
+      ->check(CLI::PositiveNumber);
+  const std::map<std::string, PixelFormat> formats{
+      {"mjpeg", PixelFormat::mjpeg}, {"yuyv", PixelFormat::yuyv}, {"nv12", PixelFormat::nv12}};
+  command
+      .add_option("--format", options.camera.mode.format,
+                  "How the camera packs pictures (default: the fastest)")
+      ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case).description(""))
+      ->type_name("mjpeg|yuyv|nv12");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--control",
+          [&options](const std::vector<std::string>& settings) {
+            for (const std::string& setting : settings) {
+              const std::size_t equals = setting.find('=');
+              const auto value = equals == std::string::npos
+                                     ? std::nullopt
+                                     : parse_int(std::string_view(setting).substr(equals + 1));
+              if (!value) throw CLI::ValidationError("--control", "write it like gain=10");
+              options.camera.controls.push_back({setting.substr(0, equals), *value});
+            }
+          },
+          "Set a control of the camera first, as --list names it")
+      ->type_name("NAME=VALUE");
+  command.add_flag("!--no-lock", options.camera.lock_automatics,
+                   "Leave exposure, gain, white balance and focus to the camera");
+}
+
+Eigen::Isometry3d transform_of(const std::vector<double>& numbers) {
+  Eigen::Matrix4d T;
+  for (Eigen::Index i = 0; i < 16; ++i) T(i / 4, i % 4) = numbers[static_cast<std::size_t>(i)];
+  const Eigen::Matrix3d R = T.topLeftCorner<3, 3>();
+  const bool is_rigid = T.allFinite() && R.isUnitary(1e-3) && R.determinant() > 0 &&
+                        T.row(3).isApprox(Eigen::RowVector4d(0, 0, 0, 1));
+  if (!is_rigid) {
+    throw core::bad_input("--T-stage-object", "is no rotation and translation",
+                          "give 16 numbers row by row, the last row 0 0 0 1");
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(R, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();
+  transform.linear() = svd.matrixU() * svd.matrixV().transpose();
+  transform.translation() = T.topRightCorner<3, 1>();
+  return transform;
+}
+
+}  // namespace
+
+void add_capture_options(CLI::App& command, CaptureOptions& options) {
+  add_camera_options(command, options);
+  command.add_option("-o,--output", options.session, "Session folder to record")
+      ->type_name("SESSION");
+  command
+      .add_option("--like", options.like,
+                  "Take camera file, board, mesh and the object's place from this session")
+      ->type_name("SESSION");
+  command.add_option("--camera", options.camera_file, "Camera file, from sheen calibrate")
+      ->type_name("FILE");
+  command.add_option("--board", options.board, "The tags on the stage")->type_name("FILE");
+  command.add_option("--mesh", options.mesh, "The object, in metres")->type_name("FILE");
+  command
+      .add_option("--T-stage-object", options.stage_from_object,
+                  "Where the object stands: 16 numbers row by row (default: as in --like, else the "
+                  "stage's own frame)")
+      ->expected(16);
+  command.add_option("--frames", options.frames, "Record so many pictures (default: until Ctrl-C)")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--seconds", options.seconds, "Record so long")->check(CLI::PositiveNumber);
+  command.add_flag("--headless", options.headless, "Without a window");
+  command
+      .add_option("--model", options.fit.output, "Model to write (default: model.glb in SESSION)")
+      ->type_name("MODEL.glb");
+  add_model_options(command, options.fit);
+}
+
+capture::SessionSetup read_setup(const CaptureOptions& options) {
+  capture::SessionSetup setup;
+  if (!options.like.empty()) {
+    const capture::Session like = capture::open_session(options.like);
+    setup = {like.camera, like.board.value_or(""), like.mesh, like.stage_from_object};
+  }
+  if (!options.camera_file.empty()) setup.camera = capture::read_camera(options.camera_file);
+  if (!options.board.empty()) setup.board = options.board;
+  if (!options.mesh.empty()) setup.mesh = options.mesh;
+  if (!options.stage_from_object.empty()) {
+    setup.stage_from_object = transform_of(options.stage_from_object);
+  }
+  const auto require = [](bool is_there, const char* option) {
+    if (is_there) return;
+    throw core::bad_input(option, "is missing", "give it, or a session to take it from (--like)");
+  };
+  require(setup.camera.width_px() > 0, "--camera");
+  require(!setup.board.empty(), "--board");
+  require(!setup.mesh.empty(), "--mesh");
+  return setup;
+}
+
+}  // namespace sheen::app

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// Camera -> recording -> model, with a camera that plays the sample recording.
+#include "app/commands/capture.h"
+
+#include "capture/source/avi_reader.h"
+#include "core/diagnostics/error.h"
+#include "tests/app/program.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+namespace sheen::tests {
+namespace {
+
+constexpr int kFrames = 16;
+
+/// Delivers the pictures of the sample recording, as fast as they are asked for, starting at some
+/// time of a clock. Loses a picture now and then, as cameras do.
+class PlayingCamera : public capture::Camera {
+ public:
+  /// Fails after `pictures`; without a value it goes on to the recording's end.
+  explicit PlayingCamera(std::optional<int> pictures = std::nullopt)
+      : reader_(capture::AviReader::open(sample_session() / "frames.avi")), pictures_(pictures) {}
+
+  std::optional<capture::CameraBuffer> next(std::chrono::milliseconds /*timeout*/) override {
+    if (pictures_ == delivered_ || !reader_->advance()) {
+      throw core::Error(core::Error::Kind::run_failed, "/dev/played", "was unplugged",
+                        "plug it in again");
+    }
+    if (sequence_ % 10 == 9) ++sequence_, ++counts_.lost;
+    ++delivered_;
+    const auto& size = reader_->header().size;
+    return capture::CameraBuffer{
+        capture::PixelFormat::mjpeg, reader_->read(), size.width_px, size.height_px, 0,
+        1234.5 + sequence_ / 30.0,   sequence_++};
+  }
+
+  [[nodiscard]] capture::CameraDescription description() const override {
+    const auto& size = reader_->header().size;
+    return {"Player",      "/dev/played",  capture::PixelFormat::mjpeg,
+            size.width_px, size.height_px, 30};
+  }
+  [[nodiscard]] capture::CameraCounts counts() const override { return counts_; }
+
+ private:
+  std::optional<capture::AviReader> reader_;
+  std::optional<int> pictures_;
+  int delivered_ = 0;
+  std::uint32_t sequence_ = 7;
+  capture::CameraCounts counts_;
+};
+
+class LiveCapture : public testing::Test {
+ protected:
+  LiveCapture() {
+    options_.session = folder_.path() / "walk";
+    options_.like = sample_session();
+    options_.frames = kFrames;
+    options_.fit.representation = "iwls";
+    context_.threads = 2;
+    context_.quiet = true;
+    context_.json = true;
+    context_.report_path = folder_.path() / "report.json";
+  }
+
+  [[nodiscard]] nlohmann::json report() const {
+    return nlohmann::json::parse(read_file(context_.report_path));
+  }
+
+  /// The model that a replay makes of the recording, from the command line.
+  std::string replay() const {
+    const auto model = folder_.path() / "replay.glb";
+    const ProgramRun run = run_sheen({"replay", options_.session, "-o", model, "--quiet"});
+    EXPECT_EQ(run.exit_code, 0) << run.standard_error;
+    return read_file(model);
+  }
+
+  [[nodiscard]] std::string model() const { return read_file(options_.session / "model.glb"); }
+
+  TemporaryFolder folder_;
+  app::CaptureOptions options_;
+  app::CommandContext context_;
+};
+
+TEST_F(LiveCapture, GivesTheModelThatAReplayOfItsRecordingGives) {
+  app::capture_session(std::make_unique<PlayingCamera>(), options_, context_);
+  const auto live = report();
+  EXPECT_EQ(live["frames"]["read"], kFrames);
+  EXPECT_GT(live["frames"]["fitted"], kFrames / 2);
+  EXPECT_EQ(live["recording"]["recorded"], kFrames);
+  EXPECT_EQ(live["recording"]["dropped"], 0);
+  EXPECT_TRUE(live["recording"]["complete"]);
+  EXPECT_EQ(model(), replay());
+}
+
+TEST_F(LiveCapture, KeepsRecordingAndModelWhenTheCameraIsGone) {
+  constexpr int delivered = 10;
+  try {
+    app::capture_session(std::make_unique<PlayingCamera>(delivered), options_, context_);
+    FAIL() << "nothing was thrown";
+  } catch (const core::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("/dev/played: was unplugged"), std::string::npos);
+    EXPECT_EQ(error.kind(), core::Error::Kind::run_failed);
+  }
+  EXPECT_EQ(report()["recording"]["recorded"], delivered);
+  EXPECT_FALSE(report()["recording"]["complete"]);
+  EXPECT_EQ(model(), replay());
+}
+
+TEST_F(LiveCapture, EndsAfterTheTimeThatWasAskedFor) {
+  options_.frames.reset();
+  options_.seconds = 0.5;
+  app::capture_session(std::make_unique<PlayingCamera>(), options_, context_);
+  // The last is the first 15/30 s after picture 7, which is 22; of these 16 the camera loses 9 and
+  // 19.
+  EXPECT_EQ(report()["recording"]["recorded"], 14);
+}
+
+TEST_F(LiveCapture, RefusesWhatDoesNotFitTogether) {
+  const auto expect_refused = [&](const std::string& word) {
+    try {
+      app::capture_session(std::make_unique<PlayingCamera>(), options_, context_);
+      ADD_FAILURE() << "nothing was thrown for " << word;
+    } catch (const core::Error& error) {
+      EXPECT_EQ(error.kind(), core::Error::Kind::bad_input);
+      EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
+    }
+  };
+  options_.stage_from_object = std::vector<double>(16, 0.5);
+  expect_refused("--T-stage-object");
+  options_.stage_from_object.clear();
+  options_.like.clear();
+  expect_refused("--camera");
+  options_.like = sample_session();
+  std::filesystem::create_directories(options_.session);
+  write_file(options_.session / "notes.txt", "mine");
+  expect_refused("exists already");
+  EXPECT_EQ(read_file(options_.session / "notes.txt"), "mine");
+}
+
+TEST(CaptureCommand, SaysWhichDeviceIsMissing) {
+  const TemporaryFolder folder;
+  const ProgramRun run = run_sheen({"capture", "/dev/no-such-camera", "-o", folder.path() / "s",
+                                    "--like", sample_session(), "--headless"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_NE(run.standard_error.find("/dev/no-such-camera"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "s"));
+  EXPECT_EQ(run_sheen({"capture", "--list", "--json"}).exit_code, 0);
+}
+
+}  // namespace
+}  // namespace sheen::tests
