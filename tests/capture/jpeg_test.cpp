@@ -19,11 +19,13 @@ constexpr PictureSize kSize{96, 64};
 
 /// A smooth coloured picture: what a lens delivers.
 cv::Mat smooth_picture() {
-  cv::Mat picture(kSize.height_px, kSize.width_px, CV_8UC3);
+  cv::Mat light(kSize.height_px, kSize.width_px, CV_32FC3);
   cv::RNG random(7);
-  random.fill(picture, cv::RNG::UNIFORM, 0, 256);
-  cv::GaussianBlur(picture, picture, {}, 6);
-  cv::normalize(picture, picture, 20, 235, cv::NORM_MINMAX);
+  random.fill(light, cv::RNG::UNIFORM, 0, 1);
+  cv::GaussianBlur(light, light, {}, 16);
+  cv::normalize(light, light, 40, 215, cv::NORM_MINMAX);
+  cv::Mat picture;
+  light.convertTo(picture, CV_8UC3);
   return picture;
 }
 
@@ -170,10 +172,9 @@ INSTANTIATE_TEST_SUITE_P(Formats, JpegEncoderOf,
                          testing::Values(PixelFormat::yuyv, PixelFormat::nv12));
 
 TEST_P(JpegEncoderOf, KeepsTheColours) {
-  // Errors: 8 bits of limited range (a step of 1.16 levels, 0.34 RMS), its rounding on the way
-  // back, quality 95 (0.5 or so on smooth pictures), chroma averaged over pairs. Together about one
-  // level RMS: 45 dB and more are left. Full and limited range mixed up would cost 16 levels, 24
-  // dB.
+  // Errors RMS in levels: limited range and its way back in luma and chroma, 0.33 and 0.29 each;
+  // quality 95 about 0.5. Blue and red add chroma times 1.8 and 1.4 to luma: about 1.3 levels, 46
+  // dB. Limited range taken for full would cost up to 16 levels, 24 dB.
   const cv::Mat picture = smooth_picture();
   const int tight = GetParam() == PixelFormat::yuyv ? 2 * picture.cols : picture.cols;
   JpegEncoder encoder;
@@ -182,7 +183,7 @@ TEST_P(JpegEncoderOf, KeepsTheColours) {
     const Bytes jpeg = encoder.encode(raw.buffer);
     cv::Mat decoded;
     ASSERT_TRUE(decode_jpeg(jpeg, kSize, decoded));
-    EXPECT_GT(cv::PSNR(picture, decoded), 40) << padding;
+    EXPECT_GT(cv::PSNR(picture, decoded), 42) << padding;
   }
 }
 
