@@ -20,7 +20,7 @@ bool DepthRaster::draw(const VertexView& view, const Eigen::Vector3f& eye, const
   top_px_ = static_cast<float>(box.top);
   width_px_ = box.right - box.left + 1;
   height_px_ = box.bottom - box.top + 1;
-  row_ = static_cast<std::size_t>(width_px_) + DepthMap::kPadding;
+  groups_ = (static_cast<std::size_t>(width_px_) + DepthMap::kGroup - 1) / DepthMap::kGroup;
   pack(view);
 
   // Every thread draws its share of the clusters into a map of its own. The nearest wins in any
@@ -59,9 +59,9 @@ void DepthRaster::pack(const VertexView& view) {
 }
 
 void DepthRaster::draw_clusters(std::size_t begin, std::size_t end, const Eigen::Vector3f& eye,
-                                std::vector<float>& map, LargeTriangles& large) const {
-  map.assign(row_ * static_cast<std::size_t>(height_px_), 0.0f);
-  const DepthMap target{map.data(), width_px_, height_px_, row_};
+                                Map& map, LargeTriangles& large) const {
+  clear(map);
+  const DepthMap target{map.data()->nearness, width_px_, height_px_, row()};
   for (std::size_t cluster = begin; cluster < end; ++cluster) {
     if (clusters_.faces_away(cluster, eye)) continue;
     kernels_.draw(vertices_.data(),
@@ -72,14 +72,22 @@ void DepthRaster::draw_clusters(std::size_t begin, std::size_t end, const Eigen:
 }
 
 void DepthRaster::merge(std::size_t maps) {
-  if (maps == 0) maps_.front().assign(row_ * static_cast<std::size_t>(height_px_), 0.0f);
-  std::vector<float>& merged = maps_.front();
+  if (maps == 0) clear(maps_.front());
+  Map& merged = maps_.front();
   parallel_for(merged.size(), threads_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t other = 1; other < maps; ++other) {
-      const std::vector<float>& map = maps_[other];
-      for (std::size_t i = begin; i < end; ++i) merged[i] = std::max(merged[i], map[i]);
+      for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t k = 0; k < DepthMap::kGroup; ++k) {
+          float& nearness = merged[i].nearness[k];
+          nearness = std::max(nearness, maps_[other][i].nearness[k]);
+        }
+      }
     }
   });
+}
+
+void DepthRaster::clear(Map& map) const {
+  map.assign(groups_ * static_cast<std::size_t>(height_px_ + DepthMap::kExtraRows), {});
 }
 
 }  // namespace sheen::core

@@ -37,32 +37,39 @@ class DepthRaster {
   [[nodiscard]] Range around(float x_px, float y_px) const {
     const float x = x_px - left_px_;
     const float y = y_px - top_px_;
-    const float* upper =
-        maps_.front().data() + static_cast<std::size_t>(y) * row_ + static_cast<std::size_t>(x);
-    const float* lower = upper + row_;
+    const float* upper = maps_.front().data()->nearness + static_cast<std::size_t>(y) * row() +
+                         static_cast<std::size_t>(x);
+    const float* lower = upper + row();
     const auto [upper_least, upper_greatest] = std::minmax(upper[0], upper[1]);
     const auto [lower_least, lower_greatest] = std::minmax(lower[0], lower[1]);
     return {std::min(upper_least, lower_least), std::max(upper_greatest, lower_greatest)};
   }
 
  private:
+  struct alignas(sizeof(float) * DepthMap::kGroup) PixelGroup {
+    float nearness[DepthMap::kGroup] = {};
+  };
+  using Map = std::vector<PixelGroup>;
+
   static constexpr float kLarge_px = 24.0f;
   static constexpr std::size_t kMostLarge = 256;
 
+  [[nodiscard]] std::size_t row() const { return groups_ * DepthMap::kGroup; }
+  void clear(Map& map) const;
   void pack(const VertexView& view);
-  void draw_clusters(std::size_t begin, std::size_t end, const Eigen::Vector3f& eye,
-                     std::vector<float>& map, LargeTriangles& large) const;
+  void draw_clusters(std::size_t begin, std::size_t end, const Eigen::Vector3f& eye, Map& map,
+                     LargeTriangles& large) const;
   void merge(std::size_t maps);
 
   TriangleClusters clusters_;
   int threads_;
   RasterKernels kernels_;
   std::vector<RasterVertex> vertices_;
-  std::vector<std::vector<float>> maps_;  ///< one per thread, merged into the first
+  std::vector<Map> maps_;  ///< one per thread, merged into the first
   std::vector<LargeTriangle> large_;
   float left_px_ = 0, top_px_ = 0;
   std::int32_t width_px_ = 0, height_px_ = 0;
-  std::size_t row_ = 0;
+  std::size_t groups_ = 0;  ///< of a row
 };
 
 }  // namespace sheen::core

@@ -15,14 +15,15 @@ struct alignas(16) RasterVertex {
   float unused;
 };
 
-/// Nearness of the nearest front per pixel, 0 where there is none. Rows are longer than the map is
-/// wide: whole vectors are written.
+/// Nearness of the nearest front per pixel, 0 where there is none. Whole groups of pixels are
+/// written, and rows past the last one.
 struct DepthMap {
-  static constexpr std::size_t kPadding = 8;  ///< floats past the last pixel of a row
+  static constexpr int kGroup = 8;  ///< floats that stand at a multiple of their size in memory
+  static constexpr int kExtraRows = 4;
 
-  float* nearness;
+  float* nearness;  ///< aligned like a group
   std::int32_t width_px, height_px;
-  std::size_t row;  ///< floats from row to row, >= width_px + kPadding
+  std::size_t row;  ///< floats from row to row, a multiple of kGroup, >= width_px
 };
 
 /// Corner indices, counter-clockwise seen from outside.

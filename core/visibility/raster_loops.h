@@ -16,11 +16,13 @@ inline constexpr int kLanes = 8;
 #else
 inline constexpr int kLanes = 4;
 #endif
-static_assert(kLanes <= static_cast<int>(DepthMap::kPadding));
+inline constexpr int kRows = 4;
+inline constexpr std::int32_t kGroup = DepthMap::kGroup;
+static_assert(kGroup % kLanes == 0 && kRows <= DepthMap::kExtraRows);
 
 using Float4 = float __attribute__((vector_size(16)));
 using Floats = float __attribute__((vector_size(4 * kLanes)));
-using UnalignedFloats = float __attribute__((vector_size(4 * kLanes), aligned(4), may_alias));
+using PixelFloats = float __attribute__((vector_size(4 * kLanes), may_alias));
 using Ints = std::int32_t __attribute__((vector_size(4 * kLanes)));
 
 #define SHEEN_INLINE __attribute__((always_inline)) inline
@@ -91,7 +93,8 @@ SHEEN_INLINE Corner gather(const RasterVertex* vertices, const std::uint32_t* id
 }
 
 /// Everything that drawing needs, lane by lane. An edge function is c + a dx + b dy, not negative
-/// inside, dx and dy counted from the first pixel (left, top).
+/// inside, dx and dy counted from the first row and the group of pixels that holds the first
+/// column.
 struct Setup {
   Floats a[3], b[3], c[3];
   Floats nearness, nearness_dx, nearness_dy, nearest;
@@ -133,7 +136,7 @@ SHEEN_INLINE Setup set_up(const Corner& p0, const Corner& p2, const Corner& p1, 
   s.large = (s.drawn & ((right - left > large_px) | (bottom - top > large_px))) | ~projected;
 
   // Edges and the plane of the nearness, which is linear on the picture.
-  const Floats x0 = __builtin_convertvector(s.left, Floats);
+  const Floats x0 = __builtin_convertvector(s.left & -kGroup, Floats);
   const Floats y0 = __builtin_convertvector(s.top, Floats);
   set_edge(s, 0, p0, p1, x0, y0);
   set_edge(s, 1, p1, p2, x0, y0);
@@ -154,54 +157,58 @@ SHEEN_INLINE Floats counting() {
   return numbers;
 }
 
-/// Draws one lane's triangle, kLanes pixels of a row at a time.
+/// Draws one lane's triangle, kLanes pixels of a few rows at a time: most triangles are not higher,
+/// and a wrong guess of the loop's end costs more than a row. Vectors begin at multiples of their
+/// length, because neighbouring triangles share pixels and a processor hands what was just stored
+/// to a load at the same place only.
 SHEEN_INLINE void draw_lane(const Setup& s, int lane, const DepthMap& map) {
-  const std::int32_t left = s.left[lane];
+  const std::int32_t origin = s.left[lane] & -kGroup;
+  const std::int32_t begin = (s.left[lane] & -kLanes) - origin;
+  const std::int32_t end = s.right[lane] - origin;
   const std::int32_t top = s.top[lane];
-  const std::int32_t width = s.right[lane] - left;
   const std::int32_t height = s.bottom[lane] - top;
   const Floats b0 = splat(s.b[0][lane]), b1 = splat(s.b[1][lane]), b2 = splat(s.b[2][lane]);
   const Floats down = splat(s.nearness_dy[lane]);
   const Floats nearest = splat(s.nearest[lane]);
-  float* row = map.nearness + static_cast<std::size_t>(top) * map.row + left;
-  for (std::int32_t first = 0; first <= width; first += kLanes) {
+  float* row = map.nearness + static_cast<std::size_t>(top) * map.row + origin;
+  for (std::int32_t first = begin; first <= end; first += kLanes) {
     const Floats dx = counting() + static_cast<float>(first);
     Floats edge0 = s.c[0][lane] + s.a[0][lane] * dx;
     Floats edge1 = s.c[1][lane] + s.a[1][lane] * dx;
     Floats edge2 = s.c[2][lane] + s.a[2][lane] * dx;
     Floats plane = s.nearness[lane] + s.nearness_dx[lane] * dx;
     float* pixels = row + first;
-    for (std::int32_t y = 0; y <= height; ++y, pixels += map.row) {
-      const Floats nearness = least(plane, nearest);
-      auto* place = reinterpret_cast<UnalignedFloats*>(pixels);
-      const Floats before = *place;
-      const Ints covered = least(edge0, least(edge1, edge2)) >= 0.0f;
-      *place = (covered & (nearness > before)) ? nearness : before;
-      edge0 += b0;
-      edge1 += b1;
-      edge2 += b2;
-      plane += down;
+    for (std::int32_t y = 0; y <= height; y += kRows) {
+      for (int r = 0; r < kRows; ++r, pixels += map.row) {
+        const Floats nearness = least(plane, nearest);
+        auto* place = reinterpret_cast<PixelFloats*>(pixels);
+        const Floats before = *place;
+        const Ints covered = least(edge0, least(edge1, edge2)) >= 0.0f;
+        *place = (covered & (nearness > before)) ? nearness : before;
+        edge0 += b0;
+        edge1 += b1;
+        edge2 += b2;
+        plane += down;
+      }
     }
   }
 }
 
-/// Notes the lanes that have to be looked at again.
-SHEEN_INLINE void note_large(const Setup& s, const TriangleCorners& triangles, std::size_t first,
-                             LargeTriangles& large) {
+/// One bit per lane that is not zero.
+SHEEN_INLINE unsigned bits_of(Ints mask) {
+  unsigned bits = 0;
   for (int lane = 0; lane < kLanes; ++lane) {
-    if (s.large[lane] == 0) continue;
-    const std::size_t t = first + static_cast<std::size_t>(lane);
-    if (large.count < large.capacity) {
-      large.triangles[large.count] = {{triangles.a[t], triangles.b[t], triangles.c[t]}};
-    }
-    ++large.count;
+    bits |= static_cast<unsigned>(mask[lane] & 1) << lane;
   }
+  return bits;
 }
 
-SHEEN_INLINE bool any(Ints mask) {
-  std::int32_t bits = 0;
-  for (int lane = 0; lane < kLanes; ++lane) bits |= mask[lane];
-  return bits != 0;
+/// Notes a triangle that has to be looked at again.
+inline void note_large(const TriangleCorners& triangles, std::size_t t, LargeTriangles& large) {
+  if (large.count < large.capacity) {
+    large.triangles[large.count] = {{triangles.a[t], triangles.b[t], triangles.c[t]}};
+  }
+  ++large.count;
 }
 
 inline void draw(const RasterVertex* vertices, const TriangleCorners& triangles, float large_px,
@@ -211,9 +218,11 @@ inline void draw(const RasterVertex* vertices, const TriangleCorners& triangles,
     const Setup s =
         set_up(gather(vertices, triangles.a + first), gather(vertices, triangles.b + first),
                gather(vertices, triangles.c + first), large_px, map);
-    if (any(s.large)) note_large(s, triangles, first, large);
-    for (int lane = 0; lane < kLanes; ++lane) {
-      if (s.drawn[lane] != 0) draw_lane(s, lane, map);
+    for (unsigned lanes = bits_of(s.large); lanes != 0; lanes &= lanes - 1) {
+      note_large(triangles, first + static_cast<std::size_t>(__builtin_ctz(lanes)), large);
+    }
+    for (unsigned lanes = bits_of(s.drawn); lanes != 0; lanes &= lanes - 1) {
+      draw_lane(s, __builtin_ctz(lanes), map);
     }
   }
 }
