@@ -20,10 +20,10 @@ namespace sheen::capture {
 /// When a recording ends by itself, and who hears of a disk that is full. Both functions are called
 /// on the recording's thread and must not wait; they may be empty.
 struct RecordingTerms {
-  std::optional<int> frames;      ///< ends after this many pictures, >= 1
-  std::optional<double> seconds;  ///< ends this long after the first picture, > 0
-  std::function<bool()> is_enough;
-  std::function<void(const core::Error&)> on_disk_fault;
+  std::optional<int> frames = {};      ///< ends after this many pictures, >= 1
+  std::optional<double> seconds = {};  ///< ends this long after the first picture, > 0
+  std::function<bool()> is_enough = {};
+  std::function<void(const core::Error&)> on_disk_fault = {};
 };
 
 /// How a recording stands.

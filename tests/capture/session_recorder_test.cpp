@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: MIT
+#include "capture/session/session_recorder.h"
+
+#include "capture/session/camera_recording.h"
+#include "capture/session/frame_stamps.h"
+#include "capture/session/session.h"
+#include "capture/source/avi_reader.h"
+#include "tests/capture/expect_bad_input.h"
+#include "tests/capture/recording_frames.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <random>
+#include <thread>
+
+namespace sheen::capture::test {
+namespace {
+
+constexpr int kFps = 30;
+constexpr std::size_t kCameraBytes = 120'000;  // of a picture at 1280x720
+
+/// Frames of a session; they must be those that were put in, in order and on time.
+int count_frames(const Session& session) {
+  const auto source = open_frames(session);
+  int frames = 0;
+  while (const auto frame = source->next()) {
+    EXPECT_EQ(frame->index, frames);
+    EXPECT_EQ(recorded_index(frame->image), frames % 40);
+    EXPECT_EQ(frame->time_s, stamp_seconds(live_picture(frames).time_us));
+    ++frames;
+  }
+  return frames;
+}
+
+TEST(SessionRecorder, IsASessionFromTheStart) {
+  const ScratchFolder scratch;
+  const auto folder = scratch.path() / "walk";
+  SessionRecorder recorder(folder, recording_setup(scratch), kFps);
+  const Session session = open_session(folder);
+  EXPECT_TRUE(session.warnings.empty());
+  EXPECT_EQ(session.stage_from_object.translation(), Eigen::Vector3d(0.5, 0, 0));
+  EXPECT_EQ(session.camera.width_px(), kRecordedSize.width_px);
+  expect_bad_input([&] { open_frames(session); }, "frames.csv", "has 0 frames");
+}
+
+TEST(SessionRecorder, KeepsEveryByteAndTime) {
+  const ScratchFolder scratch;
+  const auto folder = scratch.path() / "walk";
+  SessionRecorder recorder(folder, recording_setup(scratch), kFps);
+  for (int i = 0; i < 50; ++i) ASSERT_TRUE(recorder.add(live_picture(i)));
+  // Before and after the end.
+  ASSERT_EQ(recorder.wait_for(49), live_picture(49).time_us);
+  EXPECT_EQ(count_frames(open_session(folder)), 50);
+  recorder.close();
+  EXPECT_EQ(count_frames(open_session(folder)), 50);
+  EXPECT_FALSE(recorder.fault());
+  EXPECT_FALSE(recorder.wait_for(50));
+  EXPECT_FALSE(recorder.add(live_picture(50)));
+
+  auto reader = AviReader::open(folder / "frames.avi");
+  EXPECT_EQ(reader->header().frames, 50);
+  for (int i = 0; i < 50; ++i) {
+    ASSERT_TRUE(reader->advance());
+    const auto bytes = reader->read();
+    EXPECT_EQ(std::vector(bytes.begin(), bytes.end()), recorded_jpeg(i));
+  }
+}
+
+TEST(SessionRecorder, RefusesToWriteOverSomething) {
+  const ScratchFolder scratch;
+  scratch.write("walk/precious.txt", "mine");
+  const SessionSetup setup = recording_setup(scratch);
+  expect_bad_input([&] { SessionRecorder(scratch.path() / "walk", setup, kFps); }, "walk",
+                   "exists already");
+  SessionSetup without_mesh = setup;
+  without_mesh.mesh = scratch.path() / "absent.ply";
+  expect_bad_input([&] { SessionRecorder(scratch.path() / "other", without_mesh, kFps); },
+                   "absent.ply");
+  EXPECT_FALSE(std::filesystem::exists(scratch.path() / "other"));
+}
+
+/// Records at a camera's pace, three times as fast, until it is killed; reports every picture that
+/// it has handed in. Runs in a process of its own.
+[[noreturn]] void record_for_ever(const std::filesystem::path& folder, const SessionSetup& setup,
+                                  int reports) {
+  SessionRecorder recorder(folder, setup, kFps);
+  auto due = std::chrono::steady_clock::now();
+  for (int i = 0;; ++i) {
+    recorder.add(live_picture(i, kCameraBytes));
+    if (write(reports, "x", 1) != 1) _exit(1);
+    due += std::chrono::milliseconds(1000 / (3 * kFps));
+    std::this_thread::sleep_until(due);  // the camera's pace, nobody relies on it
+  }
+}
+
+TEST(SessionRecorder, LosesLessThanASecondToAKill) {
+  const ScratchFolder scratch;
+  const SessionSetup setup = recording_setup(scratch);
+  std::mt19937 random(17);
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    const auto folder = scratch.path() / std::to_string(attempt);
+    int ends[2];
+    ASSERT_EQ(pipe(ends), 0);
+    const pid_t child = fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) record_for_ever(folder, setup, ends[1]);
+    close(ends[1]);
+    const int handed_in = 35 + static_cast<int>(random() % 40);
+    for (int i = 0; i < handed_in; ++i) {
+      char report = 0;
+      ASSERT_EQ(read(ends[0], &report, 1), 1);
+    }
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    close(ends[0]);
+    // Less than a second of pictures; more than were reported may have come.
+    EXPECT_GT(count_frames(open_session(folder)), handed_in - kFps) << "attempt " << attempt;
+  }
+}
+
+TEST(SessionRecorder, OpensWhateverTheEndLooksLike) {
+  const ScratchFolder scratch;
+  const auto folder = scratch.path() / "walk";
+  {
+    SessionRecorder recorder(folder, recording_setup(scratch), kFps);
+    for (int i = 0; i < 30; ++i) ASSERT_TRUE(recorder.add(live_picture(i)));
+    ASSERT_TRUE(recorder.wait_for(29));
+    // As it is before it is closed.
+    std::filesystem::copy(folder, scratch.path() / "open",
+                          std::filesystem::copy_options::recursive);
+  }
+  const auto append = [&](const char* file, const std::string& bytes) {
+    std::ofstream(scratch.path() / "open" / file, std::ios::binary | std::ios::app) << bytes;
+  };
+  append("frames.avi", "00dc\xff\xff");
+  append("frames.csv", "30,1.0");
+  EXPECT_EQ(count_frames(open_session(scratch.path() / "open")), 30);
+  append("frames.avi", std::string(4000, '\xfe'));
+  append("frames.csv", "0000,35\n" + std::string(100, '\0'));
+  EXPECT_EQ(count_frames(open_session(scratch.path() / "open")), 31 - 1);
+  // Fewer stamps than pictures, then fewer pictures than stamps.
+  std::filesystem::resize_file(scratch.path() / "open" / "frames.csv", 300);
+  const int stamped = count_frames(open_session(scratch.path() / "open"));
+  EXPECT_GT(stamped, 5);
+  EXPECT_LT(stamped, 30);
+  std::filesystem::resize_file(scratch.path() / "open" / "frames.avi", 8000);
+  const int pictured = count_frames(open_session(scratch.path() / "open"));
+  EXPECT_GT(pictured, 0);
+  EXPECT_LT(pictured, stamped);
+}
+
+/// While one exists no file grows beyond `bytes`: the writes fail as on a full disk.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = bytes;
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+  FullDisk(FullDisk&&) = delete;
+  FullDisk& operator=(FullDisk&&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+TEST(SessionRecorder, KeepsWhatWasRecordedWhenTheDiskIsFull) {
+  const ScratchFolder scratch;
+  const auto folder = scratch.path() / "walk";
+  SessionRecorder recorder(folder, recording_setup(scratch), kFps);
+  int fitted = 0;
+  {
+    // Room for the headers and 7 pictures.
+    const FullDisk full(5000 + 7 * (kCameraBytes + 10) + kCameraBytes / 2);
+    for (int i = 0; i < 20; ++i) recorder.add(live_picture(i, kCameraBytes));
+    while (recorder.wait_for(fitted)) ++fitted;  // to the fault
+    recorder.close();
+  }
+  EXPECT_EQ(fitted, 7);
+  ASSERT_TRUE(recorder.fault());
+  EXPECT_NE(std::string(recorder.fault()->what()).find("recording has stopped"), std::string::npos);
+  EXPECT_FALSE(recorder.add(live_picture(20)));
+  EXPECT_EQ(count_frames(open_session(folder)), 7);
+}
+
+/// Delivers numbered pictures until it has none left, then only time passes.
+class CountingCamera : public Camera {
+ public:
+  explicit CountingCamera(int pictures) : pictures_(pictures) {}
+
+  std::optional<CameraBuffer> next(std::chrono::milliseconds /*timeout*/) override {
+    if (next_ == pictures_) return std::nullopt;
+    bytes_ = recorded_jpeg(next_, kCameraBytes);
+    const int index = next_++;
+    return CameraBuffer{PixelFormat::mjpeg,
+                        bytes_,
+                        kRecordedSize.width_px,
+                        kRecordedSize.height_px,
+                        0,
+                        100 + index / 30.0,
+                        static_cast<std::uint32_t>(index)};
+  }
+  [[nodiscard]] CameraDescription description() const override {
+    return {"Counter",
+            "/dev/counter",
+            PixelFormat::mjpeg,
+            kRecordedSize.width_px,
+            kRecordedSize.height_px,
+            kFps};
+  }
+  [[nodiscard]] CameraCounts counts() const override { return {}; }
+
+ private:
+  int pictures_;
+  int next_ = 0;
+  std::vector<std::uint8_t> bytes_;
+};
+
+TEST(CameraRecording, GivesEveryFrameToWhoeverIsSlow) {
+  const ScratchFolder scratch;
+  const auto folder = scratch.path() / "walk";
+  SessionRecorder recorder(folder, recording_setup(scratch), kFps);
+  CameraRecording recording(std::make_unique<CountingCamera>(90), recorder, {.frames = 80});
+  const auto live = recording.frames();
+  // The slowest of all: it starts when the camera has ended.
+  while (!recording.status().has_ended) std::this_thread::yield();
+  EXPECT_EQ(recording.status().recorded, 80);
+  const auto replayed = open_frames(open_session(folder));
+  for (int i = 0; i < 80; ++i) {
+    const auto frame = live->next();
+    const auto again = replayed->next();
+    ASSERT_TRUE(frame && again);
+    EXPECT_EQ(frame->index, again->index);
+    EXPECT_EQ(frame->time_s, again->time_s);
+    EXPECT_EQ(cv::norm(frame->image, again->image, cv::NORM_INF), 0);
+  }
+  EXPECT_FALSE(live->next());
+  EXPECT_FALSE(replayed->next());
+}
+
+TEST(CameraRecording, GoesOnWithoutTheDisk) {
+  const ScratchFolder scratch;
+  const auto folder = scratch.path() / "walk";
+  SessionRecorder recorder(folder, recording_setup(scratch), kFps);
+  int reports = 0;
+  int last_index = -1, frames = 0;
+  {
+    const FullDisk full(5000 + 7 * (kCameraBytes + 10) + kCameraBytes / 2);
+    CameraRecording recording(
+        std::make_unique<CountingCamera>(40), recorder,
+        {.frames = 40, .on_disk_fault = [&](const core::Error&) { ++reports; }});
+    const auto live = recording.frames();
+    while (const auto frame = live->next()) {
+      EXPECT_EQ(frame->index, last_index + 1);
+      last_index = frame->index;
+      ++frames;
+    }
+    EXPECT_EQ(recording.status().taken, 40);
+    EXPECT_EQ(recording.status().recorded, 7);
+    // The newest picture is there for the window to the end.
+    EXPECT_EQ(recording.latest().sequence, 39U);
+  }
+  EXPECT_EQ(reports, 1);
+  EXPECT_GT(frames, 7);  // the last picture at least comes after the fault
+  EXPECT_EQ(count_frames(open_session(folder)), 7);
+}
+
+TEST(CameraRecording, EndsWhenItIsToldTo) {
+  const ScratchFolder scratch;
+  SessionRecorder recorder(scratch.path() / "walk", recording_setup(scratch), kFps);
+  CameraRecording recording(std::make_unique<CountingCamera>(5), recorder, {});
+  const auto live = recording.frames();
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(live->next());
+  recording.stop();
+  EXPECT_FALSE(live->next());
+  EXPECT_TRUE(recording.status().has_ended);
+}
+
+TEST(FrameStamps, RefusesWhatIsNoSuchFile) {
+  const ScratchFolder scratch;
+  const auto expect = [&](const std::string& text, const char* word) {
+    const auto path = scratch.write("frames.csv", text);
+    expect_bad_input([&] { read_stamps(path); }, "frames.csv", word);
+  };
+  const std::string heading = stamps_heading();
+  expect("", "begin");
+  expect("time\n", "begin");
+  expect(heading + "0,0.0,0\nx,1.0,1\n2,2.0,2\n", "line 3");
+  expect(heading + "0,0.0,0\n2,1.0,1\n", "line 3");
+  expect(heading + "0,nan,0\n1,1.0,1\n", "line 2");
+  expect(heading + "0,-1.0,0\n", "line 2");
+  expect(heading + "0,1.0,0\n1,0.5,1\n", "back in time");
+  const auto path = scratch.write(
+      "frames.csv", heading + stamp_line(0, 0, 4) + stamp_line(1, 3'600'033'312, 5) + "2,3");
+  EXPECT_EQ(read_stamps(path), (std::vector<double>{0, stamp_seconds(3'600'033'312)}));
+}
+
+}  // namespace
+}  // namespace sheen::capture::test
