@@ -24,6 +24,8 @@ struct FitStatistics {
   std::size_t fits = 0;     ///< least-squares systems solved
   std::size_t patch_views =
       0;  ///< (patch, view) pairs seen: the denominator of fits per patch per view
+  /// Error that the fit does not mind, sRGB, given or estimated; nothing where there is none.
+  std::optional<float> tolerance{};
 };
 
 /// A light field under construction: takes the samples of one view after the other.

@@ -11,6 +11,7 @@
 #include "app/pipeline/replay_report.h"
 #include "app/pipeline/session_board.h"
 #include "capture/pose/trajectory.h"
+#include "core/diagnostics/cpu_clock.h"
 #include "core/diagnostics/error.h"
 #include "core/mesh/neighbours.h"
 #include "core/visibility/raster_visibility.h"
@@ -43,9 +44,13 @@ struct LightFields {
     return mean ? mean->light_field() : fitted->light_field();
   }
 
-  void finish() {
+  /// Returns the CPU time of the fitted one.
+  [[nodiscard]] double finish() {
+    const double start_ms = core::own_cpu_ms();
     fitted->finish();
+    const double elapsed_ms = core::own_cpu_ms() - start_ms;
     if (mean) mean->finish();
+    return elapsed_ms;
   }
 };
 
@@ -150,9 +155,12 @@ ReplayReport describe(const ReplayOptions& options, const LightFields& fields,
                       const FrameStatistics& frames, const core::StageTimer& timer) {
   const fitting::LightField& light_field = fields.fitted->light_field();
   const auto& observed = light_field.observed();
+  const fitting::FitStatistics fit = fields.fitted->statistics();
+  nlohmann::ordered_json settings = to_json(options);
+  settings["tolerance"] = fit.tolerance ? nlohmann::ordered_json(*fit.tolerance) : nullptr;
   return {.frames = frames,
           .timer = timer,
-          .fit = fields.fitted->statistics(),
+          .fit = fit,
           .representation = options.registered_name(),
           .patches = light_field.patch_count(),
           .patches_observed = static_cast<std::size_t>(
@@ -163,7 +171,7 @@ ReplayReport describe(const ReplayOptions& options, const LightFields& fields,
           .held_out = {},
           .held_out_mean = {},
           .held_out_refined_poses = {},
-          .options = to_json(options)};
+          .options = std::move(settings)};
 }
 
 /// Measures on the views that the fit has not seen.
@@ -222,12 +230,13 @@ FitOutcome fit_session(const ReplayOptions& options, const capture::Session& ses
                     .threads = context.threads});
   const core::StageTimer timer = fit_frames(poses, stage, frame_count, context);
   check_something_was_seen(session, stage.statistics(), fields.fitted->statistics().samples);
-  fields.finish();
+  const double finish_ms = fields.finish();
 
   // Save, measure and report.
   save(options, mesh, fields, stage.statistics().posed);
   ReplayReport report = describe(options, fields, stage.statistics(), timer);
   report.board = refinement;
+  report.finish_ms = finish_ms;
   add_held_out(options, session, mesh, fields, stage, context, report);
   return {to_json(report), to_text(report) + "written  " + options.output.string() + "\n"};
 }

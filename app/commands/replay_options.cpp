@@ -59,9 +59,9 @@ void add_fitter_options(CLI::App& command, ReplayOptions& options) {
           ->type_name("sparse|quadtree|adaptive|batch");
   command
       .add_option("--tolerance", options.sparse.tolerance,
-                  "With sparse: error that nobody minds, of 1; more is smaller")
-      ->check(CLI::Range(0.0005, 0.5))
-      ->capture_default_str();
+                  "With sparse: error that nobody minds, of 1; more is smaller (default: twice the "
+                  "camera's noise, estimated from the samples)")
+      ->check(CLI::Range(0.0005, 0.5));
   const std::vector<const CLI::Option*> of_centres{
       add_choice(command, "--layout", options.iwls.layout, kLayouts,
                  "With centres: where they lie on the disc of directions"),
@@ -157,7 +157,6 @@ nlohmann::ordered_json to_json(const ReplayOptions& options) {
   return {{"session", options.session.folder.string()},
           {"representation", options.representation},
           {"fitter", options.fitter},
-          {"tolerance", options.sparse.tolerance},
           {"layout", name_in(kLayouts, options.iwls.layout)},
           {"centers", options.iwls.centers},
           {"terms", name_in(kTerms, options.iwls.terms)},

@@ -122,6 +122,7 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
           {"stage_ms", stages},
           {"frame_ms", to_json(report.timer.frame_wall())},
           {"cpu_ms", to_json(report.timer.frame_cpu())},
+          {"finish_cpu_ms", report.finish_ms},
           {"fits_per_patch_per_view", fits_per_patch_per_view(report.fit)},
           {"patches", report.patches},
           {"patches_observed", report.patches_observed},
@@ -151,8 +152,9 @@ std::string to_text(const ReplayReport& report) {
   text += fmt::format("model    {}: {} patches ({} seen), {:.0f} numbers each, {:.2f} MB\n",
                       report.representation, report.patches, report.patches_observed,
                       per_patch(report), static_cast<double>(report.model_bytes) / 1e6);
-  text += fmt::format("fit      {} samples, {:.1f} least-squares fits per patch per view\n",
-                      report.fit.samples, fits_per_patch_per_view(report.fit));
+  text += fmt::format(
+      "fit      {} samples, {:.1f} least-squares fits per patch per view, {:.0f} ms at the end\n",
+      report.fit.samples, fits_per_patch_per_view(report.fit), report.finish_ms);
   if (report.held_out && !report.held_out->views.empty()) {
     text += fmt::format("held out {} views        PSNR    SSIM     RMSE\n",
                         report.held_out->views.size());

@@ -19,6 +19,7 @@ struct ReplayReport {
   const FrameStatistics& frames;
   const core::StageTimer& timer;
   fitting::FitStatistics fit;
+  double finish_ms = 0;  ///< CPU time of what the fit put off to the end
   std::string representation;
   std::size_t patches = 0;
   std::size_t patches_observed = 0;

@@ -12,13 +12,12 @@ namespace sheen::core {
 
 /// Calls `body(begin, end)` on disjoint ranges that cover [0, count), on up to `threads` threads of
 /// the shared WorkerPool, the calling one included; with one thread everything runs inline. The
-/// ranges follow from `count` and `threads` alone. The first exception of a body is rethrown here
+/// ranges follow from the arguments alone. The first exception of a body is rethrown here
 /// after all have ended. Bodies must write to disjoint places: then the result does not depend on
 /// `threads`. Bodies may call parallel_for themselves. The CPU time of all threads counts as the
-/// caller's (`own_cpu_ms`).
+/// caller's (`own_cpu_ms`). Below `min_range` another thread costs more than it saves.
 template <typename Body>
-void parallel_for(std::size_t count, int threads, const Body& body) {
-  constexpr std::size_t min_range = 256;  // below this a thread costs more than it saves
+void parallel_for(std::size_t count, int threads, const Body& body, std::size_t min_range = 256) {
   const std::size_t useful = std::max<std::size_t>(1, count / min_range);
   const std::size_t parts = std::min<std::size_t>(std::max(1, threads), useful);
   if (parts == 1) {

@@ -29,7 +29,8 @@ void add_level(const Level& level, std::vector<Atom>& atoms) {
           Eigen::Vector2f::Ones();
       const Eigen::Vector2f nearest =
           (center.cwiseAbs() - Eigen::Vector2f::Constant(cell / 2)).cwiseMax(0.0f);
-      if (nearest.squaredNorm() < 1.0f) atoms.push_back({center, level.support_in_cells * cell});
+      if (nearest.squaredNorm() < 1.0f)
+        atoms.push_back({center, level.support_in_cells * cell, cell});
     }
   }
 }
@@ -64,7 +65,51 @@ std::vector<float> make_means() {
   return means;
 }
 
+// Lists for the cells of the finest grid: coarser cells are unions of them.
+class Neighbourhoods {
+ public:
+  Neighbourhoods() {
+    for (int cell = 0; cell < kSide * kSide; ++cell) {
+      first_.push_back(ids_.size());
+      const Eigen::Vector2f center = Eigen::Vector2f(static_cast<float>(cell % kSide) + 0.5f,
+                                                     static_cast<float>(cell / kSide) + 0.5f) *
+                                         (2.0f / kSide) -
+                                     Eigen::Vector2f::Ones();
+      add_atoms_round(center);
+    }
+    first_.push_back(ids_.size());
+  }
+  [[nodiscard]] std::span<const std::uint16_t> at(const Eigen::Vector2f& uv) const {
+    const auto along = [](float x) {
+      return std::clamp(static_cast<int>((x + 1.0f) * (kSide / 2.0f)), 0, kSide - 1);
+    };
+    const auto cell = static_cast<std::size_t>(along(uv.y()) * kSide + along(uv.x()));
+    return std::span(ids_).subspan(first_[cell], first_[cell + 1] - first_[cell]);
+  }
+
+ private:
+  static constexpr int kSide = kLevels.back().side;
+
+  void add_atoms_round(const Eigen::Vector2f& uv) {
+    for (std::size_t idx = 0; idx < atoms().size(); ++idx) {
+      // A neighbouring cell's centre is at most a cell and a half away.
+      const float reach = 1.5f * atoms()[idx].cell;
+      if ((atoms()[idx].center - uv).cwiseAbs().maxCoeff() < reach) {
+        ids_.push_back(static_cast<std::uint16_t>(idx));
+      }
+    }
+  }
+
+  std::vector<std::uint16_t> ids_;
+  std::vector<std::size_t> first_;
+};
+
 }  // namespace
+
+std::span<const std::uint16_t> atoms_round(const Eigen::Vector2f& uv) {
+  static const Neighbourhoods all;
+  return all.at(uv);
+}
 
 std::span<const Atom> atoms() {
   static const std::vector<Atom> all = make_atoms();

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/sparse/light_field_model.h"
 
+#include "core/geometry/disc_map.h"
+#include "fitting/iwls/wendland.h"
+
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
 namespace sheen::fitting::sparse {
@@ -27,7 +31,27 @@ LightFieldModel::LightFieldModel(std::size_t patch_count)
 
 WeightedColour LightFieldModel::evaluate(std::size_t patch_idx, const Eigen::Vector2f& uv) const {
   const float weight = observed_[patch_idx] != 0 ? 1.0f : kUnseenWeight;
-  return {weight * sparse::evaluate(patch(patch_idx), uv), weight};
+  return {weight * colour(patch_idx, uv), weight};
+}
+
+// As sparse::evaluate, on what is stored: predictions of samples need nothing unpacked.
+Eigen::Vector3f LightFieldModel::colour(std::size_t patch_idx, const Eigen::Vector2f& uv) const {
+  const Slot& slot = slots_[patch_idx];
+  Eigen::Vector3f sum = as_floats(slot.constant);
+  const std::size_t further = base_terms(slot) + bump_count(slot) - 1;
+  if (further == 0) return sum;
+  const Eigen::Vector3f direction = core::hemisphere_from_disc(uv);
+  std::size_t term = 0;
+  for (; term + 1 < base_terms(slot); ++term) {
+    sum += direction[static_cast<Eigen::Index>(term)] * as_floats(slot.further[term].colour);
+  }
+  for (; term < further; ++term) {
+    const Atom& atom = atoms()[slot.further[term].atom];
+    const float squared = (direction.head<2>() - atom.center).squaredNorm();
+    if (squared >= atom.support * atom.support) continue;
+    sum += iwls::wendland(std::sqrt(squared) / atom.support) * as_floats(slot.further[term].colour);
+  }
+  return sum;
 }
 
 Eigen::Vector3f LightFieldModel::mean_colour(std::size_t patch_idx) const {
@@ -81,6 +105,14 @@ bool LightFieldModel::store(std::size_t patch_idx, const PatchModel& model) {
     changed |= replace(place.colour, rounded(model.coefficient[term]));
   }
   return changed;
+}
+
+bool LightFieldModel::follow_mean(std::size_t patch_idx, const Eigen::Vector3f& rgb,
+                                  std::size_t count) {
+  Slot& slot = slots_[patch_idx];
+  if (slot.shape != 0) return false;
+  const Eigen::Vector3f mean = as_floats(slot.constant);
+  return replace(slot.constant, rounded(mean + (rgb - mean) / static_cast<float>(count)));
 }
 
 bool LightFieldModel::store_observed(std::size_t patch_idx, bool observed) {

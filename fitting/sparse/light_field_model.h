@@ -26,6 +26,9 @@ class LightFieldModel final : public LightField {
   /// Three per term and one per bump's atom.
   [[nodiscard]] std::size_t coefficient_count() const override;
 
+  /// Value of a patch towards `uv`, not clamped to [0, 1].
+  [[nodiscard]] Eigen::Vector3f colour(std::size_t patch_idx, const Eigen::Vector2f& uv) const;
+
   /// The patch as stored: coefficients are half floats. Coefficients behind `term_count()` are
   /// unspecified.
   [[nodiscard]] PatchModel patch(std::size_t patch_idx) const;
@@ -34,6 +37,10 @@ class LightFieldModel final : public LightField {
   /// Rounds to half floats and stores; all coefficients are finite. Returns whether a stored number
   /// changed. Different patches may be written by different threads.
   bool store(std::size_t patch_idx, const PatchModel& model);
+
+  /// If the patch is one colour, moves it to the mean of `count` colours of which `rgb` is the
+  /// last; otherwise as `store`.
+  bool follow_mean(std::size_t patch_idx, const Eigen::Vector3f& rgb, std::size_t count);
 
   /// Returns whether the flag changed; threads as `store`.
   bool store_observed(std::size_t patch_idx, bool observed);

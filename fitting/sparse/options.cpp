@@ -9,8 +9,8 @@
 namespace sheen::fitting::sparse {
 
 void Options::check() const {
-  if (!(tolerance > 0.0f && tolerance < 1.0f)) {
-    throw std::invalid_argument("tolerance is " + std::to_string(tolerance) +
+  if (tolerance && !(*tolerance > 0.0f && *tolerance < 1.0f)) {
+    throw std::invalid_argument("tolerance is " + std::to_string(*tolerance) +
                                 ", it must lie between 0 and 1");
   }
   if (!(economy >= 0.0f && economy <= 10.0f)) {

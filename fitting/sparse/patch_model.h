@@ -15,6 +15,7 @@ namespace sheen::fitting::sparse {
 struct Atom {
   Eigen::Vector2f center;  ///< on the unit disc's plane
   float support;           ///< radius in disc units
+  float cell;              ///< side of the cell that it stands for, disc units
 };
 
 /// Ids are below this: larger ones would not be exact in the half floats of textures.
@@ -25,6 +26,9 @@ static_assert(kMaxAtoms <= 2048);
 /// coarse to fine; support 3.5 cells, of the finest level 5. The index is the atom's id in models
 /// and files; at most kMaxAtoms.
 std::span<const Atom> atoms();
+
+/// Ids of the atoms round a direction: of each level the cell that holds it and the eight about it.
+std::span<const std::uint16_t> atoms_round(const Eigen::Vector2f& uv);
 
 /// Mean of every atom's bump over the unit disc, as if its colour were 1 (by area of the disc).
 std::span<const float> atom_means();

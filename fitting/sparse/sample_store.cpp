@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 namespace sheen::fitting::sparse {
 namespace {
@@ -11,6 +12,25 @@ namespace {
 constexpr float kScale = 32767.0f;
 constexpr float kDarkest = -0.5f;
 constexpr float kBrightest = 1.5f;
+// A camera held still keeps forgetting slowly instead of freezing.
+constexpr unsigned kLargestCount = 255;
+// Spacing at first and how much it grows at a time: small steps give up few samples at once.
+constexpr float kFirstSpacing = 0.02f;
+constexpr float kSpacingGrowth = 1.1f;
+constexpr std::size_t kSpacings = 64;  // the last is wider than the disc
+
+float squared_spacing(std::size_t step) {
+  static const auto table = [] {
+    std::array<float, kSpacings> squares{};
+    float spacing = kFirstSpacing;
+    for (float& square : squares) {
+      square = spacing * spacing;
+      spacing *= kSpacingGrowth;
+    }
+    return squares;
+  }();
+  return table[step];
+}
 
 std::int16_t coordinate_code(float value) {
   return static_cast<std::int16_t>(std::lround(std::clamp(value, -1.0f, 1.0f) * kScale));
@@ -29,102 +49,179 @@ float colour(std::uint16_t code) {
   return static_cast<float>(code) / kScale + kDarkest;
 }
 
+// Surprises on a logarithmic scale from 1e-4 to about 3.
+constexpr float kLeastSurprise = 1e-4f;
+constexpr float kStepsPerOctave = 17.0f;
+
 }  // namespace
 
-DirectedColour SampleStore::Stored::decoded() const {
-  return {{coordinate(u), coordinate(v)}, {colour(r), colour(g), colour(b)}};
+DirectedColour SampleStore::at(std::size_t idx, const SamplePool& pool) const {
+  assert(idx < size_);
+  const SampleBlock& block = block_of(idx, pool);
+  const std::size_t i = idx % SampleBlock::kSamples;
+  return {{coordinate(block.u[i]), coordinate(block.v[i])},
+          {colour(block.r[i]), colour(block.g[i]), colour(block.b[i])}};
 }
 
-SampleStore::Stored SampleStore::Stored::encoded(const DirectedColour& sample,
-                                                 std::uint16_t count) {
-  return {coordinate_code(sample.uv.x()), coordinate_code(sample.uv.y()),
-          colour_code(sample.rgb.x()),    colour_code(sample.rgb.y()),
-          colour_code(sample.rgb.z()),    count};
+std::span<const DirectedColour> SampleStore::read(const SamplePool& pool,
+                                                  std::span<DirectedColour> samples) const {
+  for (std::size_t idx = 0; idx < size_; ++idx) samples[idx] = at(idx, pool);
+  return samples.first(size_);
 }
 
-float SampleStore::Stored::squared_distance(const Stored& other) const {
-  const float du = static_cast<float>(u) - static_cast<float>(other.u);
-  const float dv = static_cast<float>(v) - static_cast<float>(other.v);
-  return du * du + dv * dv;
+void SampleStore::put(std::size_t idx, const DirectedColour& sample, unsigned count,
+                      SamplePool& pool) const {
+  SampleBlock& block = block_of(idx, pool);
+  const std::size_t i = idx % SampleBlock::kSamples;
+  block.u[i] = coordinate_code(sample.uv.x());
+  block.v[i] = coordinate_code(sample.uv.y());
+  block.r[i] = colour_code(sample.rgb.x());
+  block.g[i] = colour_code(sample.rgb.y());
+  block.b[i] = colour_code(sample.rgb.z());
+  block.count[i] = static_cast<std::uint8_t>(std::min(kLargestCount, count));
 }
 
-// The mean of all samples that went into both, up to the saturation of the counts: a camera held
-// still keeps forgetting slowly instead of freezing.
-SampleStore::Stored SampleStore::merged(const Stored& a, const Stored& b) {
-  constexpr int largest_count = 255;
-  const DirectedColour first = a.decoded();
-  const DirectedColour second = b.decoded();
-  const float share = static_cast<float>(b.count) / static_cast<float>(a.count + b.count);
-  return Stored::encoded(
-      {first.uv + share * (second.uv - first.uv), first.rgb + share * (second.rgb - first.rgb)},
-      static_cast<std::uint16_t>(std::min(largest_count, a.count + b.count)));
+void SampleStore::move(std::size_t from, std::size_t to, SamplePool& pool) const {
+  const SampleBlock& source = block_of(from, pool);
+  SampleBlock& target = block_of(to, pool);
+  const std::size_t i = from % SampleBlock::kSamples;
+  const std::size_t k = to % SampleBlock::kSamples;
+  target.u[k] = source.u[i];
+  target.v[k] = source.v[i];
+  target.r[k] = source.r[i];
+  target.g[k] = source.g[i];
+  target.b[k] = source.b[i];
+  target.count[k] = source.count[i];
+  target.surprise[k] = source.surprise[i];
 }
 
-SampleStore::Pair SampleStore::nearest_to(const Stored& sample) const {
-  Pair nearest;
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
-    const float distance = sample.squared_distance(samples_[i]);
-    if (distance < nearest.squared_distance) {
-      nearest = {static_cast<std::uint16_t>(i), 0, distance};
+void SampleStore::set_surprise(std::size_t idx, float surprise, SamplePool& pool) const {
+  const float octaves = std::log2(std::max(surprise, kLeastSurprise) / kLeastSurprise);
+  block_of(idx, pool).surprise[idx % SampleBlock::kSamples] =
+      static_cast<std::uint8_t>(std::min(255.0f, kStepsPerOctave * octaves));
+}
+
+float SampleStore::surprise(std::size_t idx, const SamplePool& pool) const {
+  static const auto table = [] {
+    std::array<float, 256> values{};
+    for (std::size_t code = 0; code < values.size(); ++code) {
+      values[code] =
+          kLeastSurprise * std::exp2((static_cast<float>(code) + 0.5f) / kStepsPerOctave);
+    }
+    return values;
+  }();
+  return table[block_of(idx, pool).surprise[idx % SampleBlock::kSamples]];
+}
+
+std::size_t SampleStore::distances(const Eigen::Vector2f& uv, const SamplePool& pool,
+                                   std::span<float> squared) const {
+  // Measure whole blocks at a time.
+  const float u = uv.x() * kScale;
+  const float v = uv.y() * kScale;
+  std::size_t nearest = 0;
+  float smallest = std::numeric_limits<float>::infinity();
+  for (std::size_t first = 0; first < size_; first += SampleBlock::kSamples) {
+    const SampleBlock& block = block_of(first, pool);
+    std::array<float, SampleBlock::kSamples> here;
+    for (std::size_t i = 0; i < SampleBlock::kSamples; ++i) {
+      const float du = static_cast<float>(block.u[i]) - u;
+      const float dv = static_cast<float>(block.v[i]) - v;
+      here[i] = (du * du + dv * dv) * (1.0f / (kScale * kScale));
+    }
+    // Keep the nearest, the first of equals.
+    const std::size_t end = std::min(SampleBlock::kSamples, size_ - first);
+    for (std::size_t i = 0; i < end; ++i) {
+      squared[first + i] = here[i];
+      if (here[i] < smallest) {
+        smallest = here[i];
+        nearest = first + i;
+      }
     }
   }
   return nearest;
 }
 
-void SampleStore::find_closest() {
-  closest_ = {};
-  for (std::size_t i = 1; i < samples_.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const float distance = samples_[i].squared_distance(samples_[j]);
-      if (distance < closest_.squared_distance) {
-        closest_ = {static_cast<std::uint16_t>(j), static_cast<std::uint16_t>(i), distance};
+bool SampleStore::is_near(std::size_t idx, const Eigen::Vector2f& uv,
+                          const SamplePool& pool) const {
+  const SampleBlock& block = block_of(idx, pool);
+  const std::size_t i = idx % SampleBlock::kSamples;
+  const Eigen::Vector2f kept(coordinate(block.u[i]), coordinate(block.v[i]));
+  return (kept - uv).squaredNorm() < squared_spacing(spacing_);
+}
+
+// The mean of all samples that went into both, up to the saturation of the counts.
+SampleStore::Arrival SampleStore::merge(std::size_t idx, const DirectedColour& sample,
+                                        unsigned count, SamplePool& pool) {
+  const DirectedColour kept = at(idx, pool);
+  const unsigned kept_count = block_of(idx, pool).count[idx % SampleBlock::kSamples];
+  const float share = static_cast<float>(count) / static_cast<float>(kept_count + count);
+  put(idx, {kept.uv + share * (sample.uv - kept.uv), kept.rgb + share * (sample.rgb - kept.rgb)},
+      kept_count + count, pool);
+  // A difference from a mean of n has 1 + 1 / n times the variance of one sample.
+  const float inflation = 1.0f + 1.0f / static_cast<float>(kept_count);
+  return {idx, true, size_of(sample.rgb - kept.rgb) / std::sqrt(inflation)};
+}
+
+// Widens the spacing until at least one sample merges.
+void SampleStore::make_room(SamplePool& pool) {
+  std::array<DirectedColour, kMaxStoredSamples> samples;
+  const std::size_t before = size_;
+  while (size_ == before && spacing_ + 1u < kSpacings) {
+    ++spacing_;
+    read(pool, samples);
+    const float limit = squared_spacing(spacing_);
+    std::size_t kept = 1;
+    for (std::size_t idx = 1; idx < before; ++idx) {
+      // Find the nearest of those kept so far.
+      std::size_t nearest = kept;
+      float smallest = limit;
+      for (std::size_t other = 0; other < kept; ++other) {
+        const float squared = (samples[other].uv - samples[idx].uv).squaredNorm();
+        if (squared < smallest) {
+          smallest = squared;
+          nearest = other;
+        }
+      }
+      if (nearest < kept) {
+        const unsigned count = block_of(idx, pool).count[idx % SampleBlock::kSamples];
+        merge(nearest, samples[idx], count, pool);
+        samples[nearest] = at(nearest, pool);
+      } else {
+        if (kept != idx) move(idx, kept, pool);
+        samples[kept] = samples[idx];
+        ++kept;
       }
     }
+    size_ = static_cast<std::uint8_t>(kept);
   }
 }
 
-void SampleStore::update_closest(std::uint16_t moved) {
-  if (moved == closest_.first || moved == closest_.second) {
-    find_closest();
-    return;
-  }
-  for (std::size_t i = 0; i < samples_.size(); ++i) {
-    const float distance = samples_[moved].squared_distance(samples_[i]);
-    if (i != moved && distance < closest_.squared_distance) {
-      closest_ = {moved, static_cast<std::uint16_t>(i), distance};
+SampleStore::Arrival SampleStore::add(const DirectedColour& sample, std::size_t max_samples,
+                                      SamplePool& pool) {
+  assert(max_samples >= 2 && max_samples <= kMaxStoredSamples);
+  // Merge with the sample that the last one went to, else with the nearest.
+  if (size_ > 0 && is_near(latest_, sample.uv, pool)) return merge(latest_, sample, 1, pool);
+  if (size_ > 0) {
+    std::array<float, kMaxStoredSamples> squared;
+    std::size_t nearest = distances(sample.uv, pool, squared);
+    if (squared[nearest] >= squared_spacing(spacing_) && size_ == max_samples) {
+      make_room(pool);
+      nearest = distances(sample.uv, pool, squared);
+    }
+    if (squared[nearest] < squared_spacing(spacing_)) {
+      latest_ = static_cast<std::uint8_t>(nearest);
+      return merge(nearest, sample, 1, pool);
     }
   }
-}
-
-// In quarters: doubling would waste a third of the memory of patches with few samples.
-void SampleStore::grow(std::size_t max_samples) {
-  const std::size_t wanted = samples_.size() + std::max<std::size_t>(4, samples_.size() / 4);
-  samples_.reserve(std::min(wanted, max_samples));
-}
-
-void SampleStore::add(const Sample& sample, std::size_t max_samples) {
-  assert(max_samples >= 2 && max_samples <= kMaxStoredSamples);
-  const Stored added =
-      Stored::encoded({{static_cast<float>(sample.u), static_cast<float>(sample.v)},
-                       {static_cast<float>(sample.rgb[0]), static_cast<float>(sample.rgb[1]),
-                        static_cast<float>(sample.rgb[2])}},
-                      1);
-  if (samples_.size() < max_samples) {
-    if (samples_.size() == samples_.capacity()) grow(max_samples);
-    samples_.push_back(added);
-    if (samples_.size() == max_samples) find_closest();
-    return;
+  // Keep it as it is.
+  const std::size_t idx = size_;
+  if (idx % SampleBlock::kSamples == 0 && block_[idx / SampleBlock::kSamples] == 0) {
+    block_[idx / SampleBlock::kSamples] = pool.take();
   }
-  // Full: merge the closest pair among the kept and the new one.
-  const Pair nearest = nearest_to(added);
-  if (nearest.squared_distance <= closest_.squared_distance) {
-    samples_[nearest.first] = merged(samples_[nearest.first], added);
-    update_closest(nearest.first);
-  } else {
-    samples_[closest_.first] = merged(samples_[closest_.first], samples_[closest_.second]);
-    samples_[closest_.second] = added;
-    find_closest();
-  }
+  ++size_;
+  latest_ = static_cast<std::uint8_t>(idx);
+  put(idx, sample, 1, pool);
+  return {idx, false, 0.0f};
 }
 
 }  // namespace sheen::fitting::sparse

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "fitting/samples/sample.h"
+#include "fitting/sparse/columns.h"
+#include "fitting/sparse/sample_pool.h"
 
 #include <Eigen/Core>
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <vector>
+#include <span>
 
 namespace sheen::fitting::sparse {
 
 /// Most samples a patch may keep.
-inline constexpr std::size_t kMaxStoredSamples = 128;
+inline constexpr std::size_t kMaxStoredSamples = kColumnRows;
 
 /// A direction and the colour seen from it, in single precision.
 struct DirectedColour {
@@ -21,40 +23,64 @@ struct DirectedColour {
   Eigen::Vector3f rgb;  ///< sRGB
 };
 
-/// The samples of one patch, 12 bytes each, bounded in number: when full, the two samples closest
-/// in direction are replaced by their mean, so that what is kept stays spread out, extremes
-/// included, and the noise of what is given up still averages out. Empty stores own no memory.
+/// Root mean square over the channels.
+inline float size_of(const Eigen::Vector3f& difference) {
+  return std::sqrt(difference.squaredNorm() / 3.0f);
+}
+
+/// The samples of one patch, bounded in number. No two of them are nearer to each other than the
+/// store's spacing, about a degree at first: what comes nearer is averaged into what is there, so
+/// that a camera at 30 frames per second mostly merges. When the store is full its spacing grows
+/// until some merge: what is kept stays spread out, extremes included, and the noise of what is
+/// given up still averages out. 36 bytes, and 12 for each sample in the pool, in blocks of sixteen.
 class SampleStore {
  public:
-  /// Colours are limited to [-0.5, 1.5]. 2 <= max_samples <= kMaxStoredSamples, the same in every
-  /// call.
-  void add(const Sample& sample, std::size_t max_samples);
+  /// What became of a sample.
+  struct Arrival {
+    std::size_t idx;     ///< where it is kept now
+    bool merged;         ///< averaged into one that was there
+    float disagreement;  ///< if merged: distance in colour from what was there, in units of the
+                         ///< noise of one sample
+  };
 
-  [[nodiscard]] std::size_t size() const { return samples_.size(); }
-  [[nodiscard]] DirectedColour operator[](std::size_t idx) const { return samples_[idx].decoded(); }
+  /// Colours are limited to [-0.5, 1.5]. 2 <= max_samples <= kMaxStoredSamples, the same in every
+  /// call. Takes at most one block from the pool.
+  Arrival add(const DirectedColour& sample, std::size_t max_samples, SamplePool& pool);
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] DirectedColour at(std::size_t idx, const SamplePool& pool) const;
+  /// Reads all of them; `samples` has room for kMaxStoredSamples.
+  std::span<const DirectedColour> read(const SamplePool& pool,
+                                       std::span<DirectedColour> samples) const;
+
+  /// How far off the prediction was that was made without the sample; kept to about 4 %.
+  void set_surprise(std::size_t idx, float surprise, SamplePool& pool) const;
+  [[nodiscard]] float surprise(std::size_t idx, const SamplePool& pool) const;
+
+  /// Squared distances of all samples from a direction, in disc units; returns the nearest.
+  std::size_t distances(const Eigen::Vector2f& uv, const SamplePool& pool,
+                        std::span<float> squared) const;
 
  private:
-  struct Stored {
-    std::int16_t u, v;      // in 1 / 32767
-    std::uint16_t r, g, b;  // in 1 / 32767, from -0.5
-    std::uint16_t count;    // samples averaged here, saturating
-    [[nodiscard]] DirectedColour decoded() const;
-    [[nodiscard]] static Stored encoded(const DirectedColour& sample, std::uint16_t count);
-    [[nodiscard]] float squared_distance(const Stored& other) const;
-  };
-  struct Pair {
-    std::uint16_t first = 0, second = 0;
-    float squared_distance = std::numeric_limits<float>::infinity();
-  };
+  static constexpr std::size_t kBlocks = kMaxStoredSamples / SampleBlock::kSamples;
 
-  void grow(std::size_t max_samples);
-  void find_closest();
-  void update_closest(std::uint16_t moved);
-  [[nodiscard]] Pair nearest_to(const Stored& sample) const;
-  static Stored merged(const Stored& a, const Stored& b);
+  [[nodiscard]] SampleBlock& block_of(std::size_t idx, SamplePool& pool) const {
+    return pool[block_[idx / SampleBlock::kSamples]];
+  }
+  [[nodiscard]] const SampleBlock& block_of(std::size_t idx, const SamplePool& pool) const {
+    return pool[block_[idx / SampleBlock::kSamples]];
+  }
+  [[nodiscard]] bool is_near(std::size_t idx, const Eigen::Vector2f& uv,
+                             const SamplePool& pool) const;
+  Arrival merge(std::size_t idx, const DirectedColour& sample, unsigned count, SamplePool& pool);
+  void put(std::size_t idx, const DirectedColour& sample, unsigned count, SamplePool& pool) const;
+  void move(std::size_t from, std::size_t to, SamplePool& pool) const;
+  void make_room(SamplePool& pool);
 
-  std::vector<Stored> samples_;
-  Pair closest_;  // valid once the store is full
+  std::array<std::uint32_t, kBlocks> block_{};
+  std::uint8_t size_ = 0;
+  std::uint8_t latest_ = 0;   // where the last sample went: where the next one is likely to go
+  std::uint8_t spacing_ = 0;  // in steps
 };
 
 }  // namespace sheen::fitting::sparse

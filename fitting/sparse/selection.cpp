@@ -19,9 +19,9 @@ constexpr std::size_t kPriceOfAtom = 3;
 /// Part of the samples' weight that a model may use up as degrees of freedom.
 constexpr float kMostFreedom = 0.7f;
 /// Samples below which a patch is one colour.
-constexpr Eigen::Index kFewestSamples = 4;
+constexpr std::size_t kFewestSamples = 4;
 /// Samples from which the linear base is tried.
-constexpr Eigen::Index kFewestForLinear = 5;
+constexpr std::size_t kFewestForLinear = 5;
 /// Forward moves without a better score before the search gives up.
 constexpr int kPatience = 2;
 /// Channel value from which a sample counts as saturated.
@@ -31,58 +31,57 @@ constexpr float kBrightestGuess = 1.5f;
 
 }  // namespace
 
-/// Every atom's worth as the next term: with d = |a|^2 + ridge less what the chosen terms explain
-/// of it, and s its product with the residual, adding it lowers the penalised error by |s|^2 / d.
-/// Both follow each new direction without a pass over the earlier ones.
-struct Selection::Candidates {
-  struct Candidate {
-    FunctionIdx idx;
-    float remainder;
-    Eigen::RowVector3f correlation;
-  };
-  std::array<Candidate, kMaxAtoms> all;
-  std::size_t count = 0;
+void Selection::list_candidates() {
+  // Atoms that no sample touches must not divide by their ridge alone.
+  constexpr float hardly_touched = 0.02f;
+  design_.evaluate_all();
+  const std::size_t rows = design_.padded_rows();
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    columns::dots(design_.atom_columns(), atoms().size(), design_.colours(channel), rows,
+                  all_candidates_.correlation[channel].data());
+  }
+  for (std::size_t atom = 0; atom < atoms().size(); ++atom) {
+    const Column& column = design_.atom_columns()[atom];
+    const float squared = columns::dot(column, column, rows);
+    all_candidates_.remainder[atom] =
+        squared < hardly_touched ? 0.0f : squared + design_.ridge(kLinearBase + atom);
+  }
+}
 
-  void start(Design& design) {
-    // Atoms that no sample touches must not divide by their ridge alone.
-    constexpr float hardly_touched = 0.02f;
-    design.evaluate_all();
-    count = 0;
-    for (FunctionIdx idx = kLinearBase; idx < kLinearBase + atoms().size(); ++idx) {
-      const auto column = design.column(idx);
-      const float squared = column.squaredNorm();
-      if (squared < hardly_touched) continue;
-      all[count++] = {idx, squared + design.ridge(idx), column.transpose() * design.colours()};
+void Selection::follow(Candidates& candidates) const {
+  std::array<float, kMaxAtoms> shared;
+  columns::dots(design_.atom_columns(), atoms().size(), fit_.last_direction(),
+                design_.padded_rows(), shared.data());
+  const Eigen::Vector3f& projection = fit_.last_projection();
+  for (std::size_t atom = 0; atom < shared.size(); ++atom) {
+    candidates.remainder[atom] -= shared[atom] * shared[atom];
+  }
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    const float along = projection[static_cast<Eigen::Index>(channel)];
+    auto& correlation = candidates.correlation[channel];
+    for (std::size_t atom = 0; atom < shared.size(); ++atom) {
+      correlation[atom] -= along * shared[atom];
     }
   }
-  void follow(const Design& design, const StepwiseFit& fit) {
-    const Eigen::RowVector3f projection = fit.last_projection();
-    const auto direction = fit.last_direction();
-    for (Candidate& candidate : std::span(all.data(), count)) {
-      const float shared = design.column(candidate.idx).dot(direction);
-      candidate.remainder -= shared * shared;
-      candidate.correlation -= shared * projection;
-    }
+}
+
+// Takes out the best; nothing when none is left that differs from what is there.
+std::optional<FunctionIdx> Selection::take_best(Candidates& candidates) {
+  constexpr float smallest_remainder = 1e-4f;
+  const auto& s = candidates.correlation;
+  std::array<float, kMaxAtoms> gains;
+  for (std::size_t atom = 0; atom < gains.size(); ++atom) {
+    const float squared =
+        s[0][atom] * s[0][atom] + s[1][atom] * s[1][atom] + s[2][atom] * s[2][atom];
+    const float remainder = std::max(smallest_remainder, candidates.remainder[atom]);
+    gains[atom] = candidates.remainder[atom] > smallest_remainder ? squared / remainder : 0.0f;
   }
-  /// Takes out the best; nothing when none is left that differs from what is there.
-  [[nodiscard]] std::optional<FunctionIdx> take_best() {
-    constexpr float smallest_remainder = 1e-4f;
-    std::size_t best = count;
-    float largest = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      if (!(all[i].remainder > smallest_remainder)) continue;
-      const float gain = all[i].correlation.squaredNorm() / all[i].remainder;
-      if (gain > largest) {
-        largest = gain;
-        best = i;
-      }
-    }
-    if (best == count) return std::nullopt;
-    const FunctionIdx idx = all[best].idx;
-    all[best] = all[--count];
-    return idx;
-  }
-};
+  const auto best = std::max_element(gains.begin(), gains.end());
+  if (!(*best > 0.0f)) return std::nullopt;
+  const auto atom = static_cast<std::size_t>(best - gains.begin());
+  candidates.remainder[atom] = 0.0f;
+  return kLinearBase + atom;
+}
 
 float Selection::generalised_error(const StepwiseFit& fit) const {
   const float n = design_.total_weight();
@@ -97,29 +96,29 @@ float Selection::score(const StepwiseFit& fit) const {
   if (terms.count > 1 && fit.degrees_of_freedom() > kMostFreedom * n) {
     return std::numeric_limits<float>::infinity();
   }
-  const float economy = options_.economy * n / (n + kEconomyOnset);
+  const float economy = economy_ * n / (n + kEconomyOnset);
   const auto numbers = static_cast<float>(3 * terms.count + kPriceOfAtom * terms.bump_count());
-  return 1.5f * n * std::log(generalised_error(fit) + options_.tolerance * options_.tolerance) +
+  return 1.5f * n * std::log(generalised_error(fit) + tolerance_ * tolerance_) +
          0.5f * economy * numbers * std::log(std::max(2.0f, n));
 }
 
 // Best prefix of the greedy path.
 Selection::Scored Selection::grown(std::size_t base_terms) {
-  Candidates candidates;
-  candidates.start(design_);
+  Candidates candidates = all_candidates_;
   fit_.start(design_);
+  fit_is_current_ = true;
   ++fits_;
   for (FunctionIdx idx = 0; idx < base_terms; ++idx) {
     fit_.push(design_, idx);
-    candidates.follow(design_, fit_);
+    follow(candidates);
   }
   Scored best{fit_.terms(), score(fit_)};
   int in_vain = 0;
   while (in_vain <= kPatience && fit_.terms().bump_count() < kMaxBumps) {
-    const auto bump = candidates.take_best();
+    const auto bump = take_best(candidates);
     if (!bump) break;
     if (!fit_.push(design_, *bump)) continue;
-    candidates.follow(design_, fit_);
+    follow(candidates);
     ++fits_;
     const float reached = score(fit_);
     ++in_vain;
@@ -133,7 +132,7 @@ Selection::Scored Selection::grown(std::size_t base_terms) {
 
 Selection::Scored Selection::pruned(Scored best) {
   while (best.terms.bump_count() > 0) {
-    fit_.build(design_, best.terms);
+    fit(best.terms);
     TermList fewer = fit_.terms();
     fewer.erase(fit_.weakest_bump());
     const float before = best.score;
@@ -143,8 +142,14 @@ Selection::Scored Selection::pruned(Scored best) {
   return best;
 }
 
-void Selection::try_terms(const TermList& terms, Scored& best) {
+void Selection::fit(const TermList& terms) {
+  if (fit_is_current_ && fit_.terms() == terms) return;
   fit_.build(design_, terms);
+  fit_is_current_ = true;
+}
+
+void Selection::try_terms(const TermList& terms, Scored& best) {
+  fit(terms);
   ++fits_;
   const float reached = score(fit_);
   if (reached < best.score) best = {fit_.terms(), reached};
@@ -152,6 +157,7 @@ void Selection::try_terms(const TermList& terms, Scored& best) {
 
 TermList Selection::best_terms() {
   if (design_.rows() < kFewestSamples) return TermList::base(kConstantBase);
+  list_candidates();
   const Scored constant = pruned(grown(kConstantBase));
   if (design_.rows() < kFewestForLinear) return constant.terms;
   const Scored linear = pruned(grown(kLinearBase));
@@ -160,51 +166,89 @@ TermList Selection::best_terms() {
 
 // Judges every sample by the residual it would have had were it not in the fit: a lone outlier with
 // a bump of its own stands out, while the samples of a highlight vouch for each other. `fit_` holds
-// the fit to judge by. Returns whether anything changed.
-bool Selection::discount_suspects(std::span<const DirectedColour> samples) {
-  std::array<float, kMaxStoredSamples> surprise;
+// the fit to judge by.
+void Selection::judge_samples(std::span<const DirectedColour> samples) {
+  constexpr float least_left = 0.05f;
+  Column leverage;
+  fit_.leverages(leverage);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    float squared = 0;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const float fitted = design_.colours(channel).row[i] - fit_.residuals(channel).row[i];
+      const float residual =
+          samples[i].rgb[static_cast<Eigen::Index>(channel)] - fitted / design_.root_weight(i);
+      squared += residual * residual;
+    }
+    left_out_residual_[i] =
+        std::sqrt(squared / 3.0f) / std::max(least_left, 1.0f - leverage.row[i]);
+  }
+}
+
+// A saturated channel only says "at least this much": raises it to what is fitted. Returns whether
+// anything changed.
+bool Selection::censor(std::span<const DirectedColour> samples) {
   bool changed = false;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    const Eigen::Vector3f residual = fit_.residuals().row(row) / design_.root_weight(i);
-    const Eigen::Vector3f asked = design_.colours().row(row) / design_.root_weight(i);
-    const float left = std::max(0.05f, 1.0f - fit_.leverage(i));
-    surprise[i] = residual.norm() / left;
-    // A saturated channel only says "at least this much".
-    Eigen::Vector3f wanted = samples[i].rgb;
-    for (int channel = 0; channel < 3; ++channel) {
-      const float fitted = asked[channel] - residual[channel];
-      if (wanted[channel] < kSaturated || fitted <= wanted[channel]) continue;
+    const Eigen::Vector3f& rgb = samples[i].rgb;
+    if (rgb.maxCoeff() < kSaturated) continue;
+    Eigen::Vector3f wanted = rgb;
+    for (Eigen::Index channel = 0; channel < 3; ++channel) {
+      const auto c = static_cast<std::size_t>(channel);
+      const float fitted =
+          (design_.colours(c).row[i] - fit_.residuals(c).row[i]) / design_.root_weight(i);
+      if (rgb[channel] < kSaturated || fitted <= rgb[channel]) continue;
       wanted[channel] = std::min(fitted, kBrightestGuess);
     }
-    if (wanted == samples[i].rgb) continue;
+    if (wanted == rgb) continue;
     design_.set_colour(i, wanted);
+    fit_is_current_ = false;
     changed = true;
   }
-  const std::span<float> factors(surprise.data(), samples.size());
-  return set_factors(factors) || changed;
+  return changed;
+}
+
+// Returns whether anything changed. A saturated sample is judged by what it asked for so far.
+bool Selection::discount_suspects(std::span<const DirectedColour> samples) {
+  constexpr float least_left = 0.05f;
+  std::array<float, kMaxStoredSamples> surprise;
+  Column leverage;
+  fit_.leverages(leverage);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    float squared = 0;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const float residual = fit_.residuals(channel).row[i] / design_.root_weight(i);
+      squared += residual * residual;
+    }
+    surprise[i] = std::sqrt(squared) / std::max(least_left, 1.0f - leverage.row[i]);
+  }
+  const bool censored = censor(samples);
+  return set_factors({surprise.data(), samples.size()}) || censored;
 }
 
 // Factors replace those of an earlier pass, so that a highlight that was mistaken for an outlier
 // can come back.
 bool Selection::set_factors(std::span<float> factors) {
   constexpr float noticeable = 0.01f;
-  robust_factors(factors, options_.tolerance);
+  robust_factors(factors, tolerance_);
   bool changed = false;
   for (std::size_t i = 0; i < factors.size(); ++i) {
     const float before = std::exchange(factor_[i], factors[i]);
     changed |= std::abs(factor_[i] - before) > noticeable;
     factors[i] = factor_[i] / before;
   }
-  if (changed) design_.reweigh(factors);
+  if (changed) {
+    design_.reweigh(factors);
+    fit_is_current_ = false;
+  }
   return changed;
 }
 
-SelectedModel Selection::outcome(const TermList& terms) {
-  fit_.build(design_, terms);
+SelectedModel Selection::outcome(std::span<const DirectedColour> samples, const TermList& terms) {
+  fit(terms);
   ++fits_;
-  const float error = generalised_error(fit_) + options_.tolerance * options_.tolerance;
-  return {fit_.model(fit_.terms().count), std::sqrt(error), fits_};
+  judge_samples(samples);
+  const float error = generalised_error(fit_) + tolerance_ * tolerance_;
+  return {fit_.model(), std::sqrt(error), fits_, {left_out_residual_.data(), samples.size()}};
 }
 
 SelectedModel Selection::choose(std::span<const DirectedColour> samples) {
@@ -213,34 +257,36 @@ SelectedModel Selection::choose(std::span<const DirectedColour> samples) {
   constexpr int passes = 2;
   fits_ = 0;
   design_.load(samples);
+  fit_is_current_ = false;
   factor_.fill(1.0f);
   TermList terms = best_terms();
-  if (design_.rows() < kFewestSamples) return outcome(terms);
+  if (design_.rows() < kFewestSamples) return outcome(samples, terms);
   for (int pass = 0; pass < passes; ++pass) {
-    fit_.build(design_, terms);
+    fit(terms);
     if (!discount_suspects(samples)) break;
     terms = best_terms();
   }
-  return outcome(terms);
+  return outcome(samples, terms);
 }
 
 std::optional<TermList> Selection::with_best_bump(const TermList& terms,
                                                   const Eigen::Vector2f& seen_at) {
   if (terms.bump_count() == kMaxBumps) return std::nullopt;
-  fit_.build(design_, terms);
-  const auto residuals = fit_.residuals();
+  fit(terms);
+  const std::size_t rows = design_.padded_rows();
   std::optional<FunctionIdx> best;
   float largest = 0;
-  for (std::size_t atom = 0; atom < atoms().size(); ++atom) {
-    const Atom& a = atoms()[atom];
-    if ((seen_at - a.center).squaredNorm() >= a.support * a.support) continue;
+  for (const std::uint16_t atom : atoms_round(seen_at)) {
     const FunctionIdx idx = kLinearBase + atom;
-    const auto* end = terms.function.data() + terms.count;
-    if (std::find(terms.function.data(), end, static_cast<std::uint16_t>(idx)) != end) continue;
+    if (terms.holds(idx)) continue;
     design_.evaluate(idx);
-    const auto column = design_.column(idx);
-    const float gain = (column.transpose() * residuals).squaredNorm() /
-                       (column.squaredNorm() + design_.ridge(idx));
+    const Column& column = design_.column(idx);
+    float squared = 0;
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      const float product = columns::dot(column, fit_.residuals(channel), rows);
+      squared += product * product;
+    }
+    const float gain = squared / (columns::dot(column, column, rows) + design_.ridge(idx));
     if (gain > largest) {
       largest = gain;
       best = idx;
@@ -256,9 +302,10 @@ SelectedModel Selection::step(std::span<const DirectedColour> samples, const Pat
                               const Eigen::Vector2f& seen_at) {
   fits_ = 0;
   design_.load(samples);
+  fit_is_current_ = false;
   Scored best{TermList::of(model), std::numeric_limits<float>::infinity()};
   design_.evaluate(best.terms);
-  if (design_.rows() < kFewestSamples) return outcome(TermList::base(kConstantBase));
+  if (design_.rows() < kFewestSamples) return outcome(samples, TermList::base(kConstantBase));
   try_terms(best.terms, best);
   // Upgrade the base.
   if (best.terms.base_terms() == kConstantBase && design_.rows() >= kFewestForLinear) {
@@ -271,12 +318,12 @@ SelectedModel Selection::step(std::span<const DirectedColour> samples, const Pat
   // Add a bump, take one away.
   if (const auto more = with_best_bump(best.terms, seen_at)) try_terms(*more, best);
   if (best.terms.bump_count() > 1) {
-    fit_.build(design_, best.terms);
+    fit(best.terms);
     TermList fewer = fit_.terms();
     fewer.erase(fit_.weakest_bump());
     try_terms(fewer, best);
   }
-  return outcome(best.terms);
+  return outcome(samples, best.terms);
 }
 
 }  // namespace sheen::fitting::sparse

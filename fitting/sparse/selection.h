@@ -20,6 +20,9 @@ struct SelectedModel {
   /// tolerance.
   float expected_error = 0;
   std::size_t fits = 0;  ///< regressions solved on the way
+  /// For each sample how far off the fit would be without it: its residual over 1 - leverage, root
+  /// mean square over the channels. Valid until the next call.
+  std::span<const float> left_out_residuals;
 };
 
 /// Chooses the terms of a patch: those that lower
@@ -29,10 +32,15 @@ struct SelectedModel {
 /// with GCV = mean r^2 / (1 - df / n)^2, n the weight of the samples, and three numbers for a term
 /// and three more for the choice of its atom. The economy grows with n to its nominal value: with a
 /// dozen samples a term that is wrong costs little and one that is missing much. Holds the
-/// workspace (about 180 KB): one per thread.
+/// workspace (about 190 KB): one per thread.
 class Selection {
  public:
-  explicit Selection(const Options& options) : options_(options) {}
+  /// The options' tolerance may be changed later.
+  explicit Selection(const Options& options)
+      : economy_(options.economy),
+        tolerance_(options.tolerance.value_or(kToleranceOfUnknownNoise)) {}
+
+  void set_tolerance(float tolerance) { tolerance_ = tolerance; }
 
   /// From nothing: forward from both bases, backward, then up to twice more with outliers weighed
   /// down (by their leave-one-out residuals) and saturated samples censored. Depends on
@@ -40,7 +48,7 @@ class Selection {
   SelectedModel choose(std::span<const DirectedColour> samples);
 
   /// One step from `model`, given the sample that was just seen: refit, then at most one move
-  /// each: the base upgraded, the best bump that reaches the sample added, the weakest removed.
+  /// each: the base upgraded, the best of the bumps round the sample added, the weakest removed.
   SelectedModel step(std::span<const DirectedColour> samples, const PatchModel& model,
                      const Eigen::Vector2f& seen_at);
 
@@ -49,24 +57,41 @@ class Selection {
     TermList terms;
     float score;
   };
-  struct Candidates;
+  /// Every atom's worth as the next term: with d = |a|^2 + ridge less what the chosen terms explain
+  /// of it, and s its product with the residual, adding it lowers the penalised error by |s|^2 / d.
+  /// Both follow each new direction without a pass over the earlier ones.
+  struct Candidates {
+    alignas(64) std::array<float, kMaxAtoms> remainder;  ///< d; 0 for what cannot be chosen
+    alignas(64) std::array<std::array<float, kMaxAtoms>, 3> correlation;  ///< s, by channel
+  };
 
   [[nodiscard]] float generalised_error(const StepwiseFit& fit) const;
   [[nodiscard]] float score(const StepwiseFit& fit) const;
+  void list_candidates();
+  void follow(Candidates& candidates) const;
+  [[nodiscard]] static std::optional<FunctionIdx> take_best(Candidates& candidates);
   [[nodiscard]] Scored grown(std::size_t base_terms);
   [[nodiscard]] Scored pruned(Scored start);
   [[nodiscard]] TermList best_terms();
   [[nodiscard]] bool discount_suspects(std::span<const DirectedColour> samples);
+  [[nodiscard]] bool censor(std::span<const DirectedColour> samples);
+  void judge_samples(std::span<const DirectedColour> samples);
   [[nodiscard]] bool set_factors(std::span<float> factors);
   [[nodiscard]] std::optional<TermList> with_best_bump(const TermList& terms,
                                                        const Eigen::Vector2f& seen_at);
+  void fit(const TermList& terms);
   void try_terms(const TermList& terms, Scored& best);
-  [[nodiscard]] SelectedModel outcome(const TermList& terms);
+  [[nodiscard]] SelectedModel outcome(std::span<const DirectedColour> samples,
+                                      const TermList& terms);
 
-  Options options_;
+  float economy_;
+  float tolerance_;
   Design design_;
   StepwiseFit fit_;
+  bool fit_is_current_ = false;                    ///< `fit_` is of `design_` as it is now
+  Candidates all_candidates_;                      ///< as long as there are no terms
   std::array<float, kMaxStoredSamples> factor_{};  ///< what weights are multiplied by
+  std::array<float, kMaxStoredSamples> left_out_residual_{};
   std::size_t fits_ = 0;
 };
 

@@ -5,44 +5,50 @@
 #include "fitting/samples/change_list.h"
 #include "fitting/samples/sample.h"
 #include "fitting/sparse/light_field_model.h"
+#include "fitting/sparse/noise_estimate.h"
 #include "fitting/sparse/predicted_error.h"
 #include "fitting/sparse/sample_store.h"
 #include "fitting/sparse/selection.h"
+#include "fitting/sparse/workspaces.h"
 #include "fitting/unseen/fill_unseen.h"
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cassert>
-#include <memory>
+#include <mutex>
 
 namespace sheen::fitting::sparse {
 namespace {
 
-/// What is known of a patch besides its model: 48 bytes and 12 per kept sample.
-struct PatchState {
+/// Samples of a view for which one patch may be improved while it is absorbed.
+constexpr std::size_t kSamplesPerStep = 48;
+/// Patches of a view that may be improved in any case.
+constexpr std::size_t kFewestSteps = 32;
+/// Samples from which a patch may be more than one colour.
+constexpr std::size_t kFewestToImprove = 4;
+/// Spread of the colours to assume before the first fit.
+constexpr float kSupposedSpread = 0.1f;
+
+/// What is known of a patch besides its model: a cache line, and 12 bytes per kept sample.
+struct alignas(64) PatchState {
   SampleStore samples;
-  std::uint32_t seen = 0;     ///< samples absorbed
-  std::uint32_t look_at = 1;  ///< number of samples at which the patch is looked at anyway
-  float expected_error = 0;   ///< of a new sample
-  bool unsettled = false;     ///< touched since the last `finish`
+  float expected_error = 0;  ///< of a new sample; 0 before the first fit
+  float debt = 0;            ///< sum of what predictions were off, squared, since the last fit
+  float spread = kSupposedSpread;  ///< of the colours at the last fit
+  std::uint8_t look_at = 0;  ///< number of kept samples at which the patch is looked at anyway
+  bool unsettled = false;    ///< touched since the last `finish`
 };
+static_assert(sizeof(PatchState) == 64);
 
-/// Scratch of one thread.
-struct Workspace {
-  explicit Workspace(const Options& options) : selection(options) {}
-  Selection selection;
-  std::array<DirectedColour, kMaxStoredSamples> samples;
+/// A patch that asks to be improved: position in the batch and how urgent it is.
+struct Request {
+  float debt;
+  std::uint32_t position;
 
-  std::span<const DirectedColour> read(const SampleStore& store) {
-    for (std::size_t i = 0; i < store.size(); ++i) samples[i] = store[i];
-    return {samples.data(), store.size()};
+  /// By urgency, then in order.
+  [[nodiscard]] bool operator<(const Request& other) const {
+    return debt > other.debt || (debt == other.debt && position < other.position);
   }
-};
-
-struct Counts {
-  std::size_t samples = 0;
-  std::size_t fits = 0;
 };
 
 class SparseRepresentation final : public Representation {
@@ -52,107 +58,197 @@ class SparseRepresentation final : public Representation {
       : neighbours_(neighbours),
         options_(options),
         threads_(threads),
+        tolerance_(options.tolerance.value_or(kToleranceOfUnknownNoise)),
         states_(neighbours.vertex_count()),
-        model_(neighbours.vertex_count()) {}
+        model_(neighbours.vertex_count()),
+        workspaces_(options) {}
 
   const ModelUpdate& absorb(const core::SampleBatch& batch) override;
   const ModelUpdate& finish() override;
   [[nodiscard]] const LightField& light_field() const override { return model_; }
-  [[nodiscard]] FitStatistics statistics() const override { return statistics_; }
+  [[nodiscard]] FitStatistics statistics() const override {
+    FitStatistics statistics = statistics_;
+    statistics.tolerance = tolerance_;
+    return statistics;
+  }
   [[nodiscard]] std::optional<float> predicted_error(std::size_t patch_idx,
                                                      const Eigen::Vector2f& uv) const override;
 
  private:
-  bool absorb_sample(std::size_t patch_idx, const Sample& sample, Workspace& workspace,
-                     Counts& counts);
-  bool take(std::size_t patch_idx, const SelectedModel& selected, Counts& counts);
+  void update_tolerance();
+  bool absorb_sample(std::size_t patch_idx, const DirectedColour& sample, NoiseEstimate& noise);
+  void keep_samples(const core::SampleBatch& batch);
+  void collect_requests(const core::SampleBatch& batch);
+  void improve(const core::SampleBatch& batch);
+  bool take(std::size_t patch_idx, const SelectedModel& selected,
+            std::span<const DirectedColour> samples);
   void settle();
   void fill();
 
   core::VertexNeighbours neighbours_;
   Options options_;
   int threads_;
+  float tolerance_;
   std::vector<PatchState> states_;
+  SamplePool pool_;
   LightFieldModel model_;
+  NoiseEstimate noise_;
+  Workspaces workspaces_;
   FitStatistics statistics_;
+  std::vector<Request> requests_;
   ChangeList changes_;
   ModelUpdate update_;
 };
 
+// Noise is no reason for a term: two deviations keep out all but the rarest.
+void SparseRepresentation::update_tolerance() {
+  constexpr float deviations = 2.0f;
+  constexpr float least = 0.01f;  // of the best camera poses and meshes are not exact either
+  constexpr float most = 0.05f;
+  if (options_.tolerance) return;
+  if (const auto noise = noise_.deviation()) {
+    tolerance_ = std::clamp(deviations * *noise, least, most);
+  }
+}
+
 bool SparseRepresentation::take(std::size_t patch_idx, const SelectedModel& selected,
-                                Counts& counts) {
-  counts.fits += selected.fits;
-  states_[patch_idx].expected_error = selected.expected_error;
+                                std::span<const DirectedColour> samples) {
+  PatchState& state = states_[patch_idx];
+  state.expected_error = selected.expected_error;
+  state.debt = 0;
+  state.spread = colour_spread(samples);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    state.samples.set_surprise(i, selected.left_out_residuals[i], pool_);
+  }
   return model_.store(patch_idx, selected.model);
 }
 
-bool SparseRepresentation::absorb_sample(std::size_t patch_idx, const Sample& sample,
-                                         Workspace& workspace, Counts& counts) {
+// Most samples of a slowly moving camera are averaged into a kept one and end here. Returns whether
+// the model changed.
+bool SparseRepresentation::absorb_sample(std::size_t patch_idx, const DirectedColour& sample,
+                                         NoiseEstimate& noise) {
   // Keep the sample.
+  constexpr float saturated = 254.0f / 255.0f;
   PatchState& state = states_[patch_idx];
-  state.samples.add(sample, static_cast<std::size_t>(options_.max_samples));
   state.unsettled = true;
-  ++state.seen;
-  ++counts.samples;
-
-  // Leave the patch alone while it predicts well.
-  constexpr float surprise = 1.5f;
-  const Eigen::Vector2f uv(static_cast<float>(sample.u), static_cast<float>(sample.v));
-  const PatchModel model = model_.patch(patch_idx);
-  if (state.seen < state.look_at) {
-    const Eigen::Vector3f rgb = Eigen::Vector3d(sample.rgb.data()).cast<float>();
-    const float squared_error = (evaluate(model, uv) - rgb).squaredNorm() / 3.0f;
-    const float limit = surprise * state.expected_error;
-    if (squared_error <= limit * limit) return false;
-  } else {
-    state.look_at = state.seen + std::max(1u, state.seen / 3);
+  const SampleStore::Arrival arrival =
+      state.samples.add(sample, static_cast<std::size_t>(options_.max_samples), pool_);
+  if (arrival.merged) {
+    if (sample.rgb.maxCoeff() < saturated) noise.add(arrival.disagreement);
+    return false;
   }
 
-  // Improve it by one step.
-  const bool changed =
-      take(patch_idx, workspace.selection.step(workspace.read(state.samples), model, uv), counts);
+  // Compare with the prediction; a patch of one colour follows the mean.
+  constexpr float surprise = 1.5f;
+  const bool first = state.samples.size() == 1;
+  const Eigen::Vector3f predicted = first ? sample.rgb : model_.colour(patch_idx, sample.uv);
+  const float error = size_of(predicted - sample.rgb);
+  state.samples.set_surprise(arrival.idx, error, pool_);
+  const float limit = surprise * std::max(state.expected_error, tolerance_);
+  state.debt += std::max(0.0f, error * error - limit * limit);
+  if (state.samples.size() >= state.look_at) {
+    state.debt += tolerance_ * tolerance_;
+    const std::size_t third = std::max<std::size_t>(1, state.samples.size() / 3);
+    state.look_at = static_cast<std::uint8_t>(state.samples.size() + third);
+  }
+  const bool changed = model_.follow_mean(patch_idx, sample.rgb, state.samples.size());
   return model_.store_observed(patch_idx, true) || changed;
 }
 
-const ModelUpdate& SparseRepresentation::absorb(const core::SampleBatch& batch) {
-  changes_.reset(batch.size());
-  std::atomic<std::size_t> samples{0};
-  std::atomic<std::size_t> fits{0};
+void SparseRepresentation::keep_samples(const core::SampleBatch& batch) {
+  pool_.reserve(batch.size());
+  std::mutex mutex;
   // Patches are independent and appear once: any split of the batch gives the same result.
   core::parallel_for(batch.size(), threads_, [&](std::size_t begin, std::size_t end) {
-    const auto workspace = std::make_unique<Workspace>(options_);
-    Counts counts;
+    NoiseEstimate noise;
+    std::size_t samples = 0;
     for (std::size_t i = begin; i < end; ++i) {
       assert(batch.patch[i] < states_.size() && (i == 0 || batch.patch[i - 1] < batch.patch[i]));
       const auto sample = usable_sample(batch, i);
       if (!sample) continue;
-      changes_.mark(i, absorb_sample(batch.patch[i], *sample, *workspace, counts));
+      const DirectedColour kept{Eigen::Vector2d(sample->u, sample->v).cast<float>(),
+                                Eigen::Vector3d(sample->rgb.data()).cast<float>()};
+      changes_.mark(i, absorb_sample(batch.patch[i], kept, noise));
+      ++samples;
     }
-    samples += counts.samples;
-    fits += counts.fits;
+    const std::lock_guard lock(mutex);
+    noise_.add(noise);
+    statistics_.samples += samples;
+    statistics_.patch_views += samples;
   });
-  statistics_.samples += samples;
-  statistics_.patch_views += samples;
-  statistics_.fits += fits;
+}
+
+// The most urgent of the view's patches, as many as the budget allows: a count of steps and not a
+// time, so that results do not depend on the machine. The others keep their debt and ask again when
+// they are seen again, or wait for `finish`.
+void SparseRepresentation::collect_requests(const core::SampleBatch& batch) {
+  requests_.clear();
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    const PatchState& state = states_[batch.patch[i]];
+    if (!(state.debt > 0.0f) || state.samples.size() < kFewestToImprove) continue;
+    requests_.push_back({state.debt, static_cast<std::uint32_t>(i)});
+  }
+  const std::size_t budget = std::max(kFewestSteps, batch.size() / kSamplesPerStep);
+  if (requests_.size() <= budget) return;
+  const auto end = requests_.begin() + static_cast<std::ptrdiff_t>(budget);
+  std::nth_element(requests_.begin(), end, requests_.end());
+  requests_.erase(end, requests_.end());
+}
+
+void SparseRepresentation::improve(const core::SampleBatch& batch) {
+  constexpr std::size_t steps_worth_a_thread = 64;
+  std::mutex mutex;
+  core::parallel_for(
+      requests_.size(), threads_,
+      [&](std::size_t begin, std::size_t end) {
+        std::size_t fits = 0;
+        workspaces_.with_one([&](Workspace& workspace) {
+          workspace.selection.set_tolerance(tolerance_);
+          for (std::size_t i = begin; i < end; ++i) {
+            const std::uint32_t position = requests_[i].position;
+            const std::uint32_t patch = batch.patch[position];
+            const auto samples = states_[patch].samples.read(pool_, workspace.samples);
+            const SelectedModel stepped = workspace.selection.step(
+                samples, model_.patch(patch), {batch.u[position], batch.v[position]});
+            changes_.mark(position, take(patch, stepped, samples));
+            fits += stepped.fits;
+          }
+        });
+        const std::lock_guard lock(mutex);
+        statistics_.fits += fits;
+      },
+      steps_worth_a_thread);
+}
+
+const ModelUpdate& SparseRepresentation::absorb(const core::SampleBatch& batch) {
+  changes_.reset(batch.size());
+  keep_samples(batch);
+  update_tolerance();
+  collect_requests(batch);
+  improve(batch);
   changes_.list([&](std::size_t i) { return batch.patch[i]; }, update_);
   return update_;
 }
 
 void SparseRepresentation::settle() {
-  std::atomic<std::size_t> fits{0};
+  std::mutex mutex;
   core::parallel_for(states_.size(), threads_, [&](std::size_t begin, std::size_t end) {
-    const auto workspace = std::make_unique<Workspace>(options_);
-    Counts counts;
-    for (std::size_t patch = begin; patch < end; ++patch) {
-      PatchState& state = states_[patch];
-      if (!state.unsettled) continue;
-      state.unsettled = false;
-      changes_.mark(
-          patch, take(patch, workspace->selection.choose(workspace->read(state.samples)), counts));
-    }
-    fits += counts.fits;
+    std::size_t fits = 0;
+    workspaces_.with_one([&](Workspace& workspace) {
+      workspace.selection.set_tolerance(tolerance_);
+      for (std::size_t patch = begin; patch < end; ++patch) {
+        PatchState& state = states_[patch];
+        if (!state.unsettled) continue;
+        state.unsettled = false;
+        const auto samples = state.samples.read(pool_, workspace.samples);
+        const SelectedModel chosen = workspace.selection.choose(samples);
+        changes_.mark(patch, take(patch, chosen, samples));
+        fits += chosen.fits;
+      }
+    });
+    const std::lock_guard lock(mutex);
+    statistics_.fits += fits;
   });
-  statistics_.fits += fits;
 }
 
 void SparseRepresentation::fill() {
@@ -179,11 +275,10 @@ const ModelUpdate& SparseRepresentation::finish() {
 
 std::optional<float> SparseRepresentation::predicted_error(std::size_t patch_idx,
                                                            const Eigen::Vector2f& uv) const {
-  const SampleStore& store = states_[patch_idx].samples;
-  if (store.size() == 0) return std::nullopt;
-  std::array<DirectedColour, kMaxStoredSamples> samples;
-  for (std::size_t i = 0; i < store.size(); ++i) samples[i] = store[i];
-  return sparse::predicted_error(model_.patch(patch_idx), {samples.data(), store.size()}, uv);
+  const PatchState& state = states_[patch_idx];
+  if (state.samples.size() == 0) return std::nullopt;
+  return sparse::predicted_error(state.samples, pool_, state.spread, uv,
+                                 model_.colour(patch_idx, uv));
 }
 
 }  // namespace

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/sparse/stepwise_fit.h"
 
-#include "fitting/iwls/wendland.h"
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
@@ -36,6 +34,16 @@ void TermList::erase(std::size_t position) {
   --count;
 }
 
+bool TermList::holds(FunctionIdx idx) const {
+  const auto* end = function.data() + count;
+  return std::find(function.data(), end, static_cast<std::uint16_t>(idx)) != end;
+}
+
+bool TermList::operator==(const TermList& other) const {
+  return std::equal(function.data(), function.data() + count, other.function.data(),
+                    other.function.data() + other.count);
+}
+
 TermList TermList::base(std::size_t base_terms) {
   TermList terms;
   for (FunctionIdx idx = 0; idx < base_terms; ++idx) terms.push(idx);
@@ -48,18 +56,12 @@ TermList TermList::of(const PatchModel& model) {
   return terms;
 }
 
-void Design::weigh(std::span<const DirectedColour> samples) {
-  root_weight_.head(rows_).setOnes();
-  for (std::size_t i = 1; i < samples.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const float squared = (samples[i].uv - samples[j].uv).squaredNorm();
-      if (squared >= kReach * kReach) continue;
-      const float shared = iwls::wendland(std::sqrt(squared) / kReach);
-      root_weight_[static_cast<Eigen::Index>(i)] += shared;
-      root_weight_[static_cast<Eigen::Index>(j)] += shared;
-    }
+void Design::weigh() {
+  columns::crowding(u_, v_, padded_rows(), kReach, root_weight_);
+  for (std::size_t row = 0; row < rows_; ++row) {
+    root_weight_.row[row] = 1.0f / std::sqrt(root_weight_.row[row]);
   }
-  root_weight_.head(rows_) = root_weight_.head(rows_).cwiseSqrt().cwiseInverse();
+  std::fill(root_weight_.row + rows_, root_weight_.row + padded_rows(), 0.0f);
 }
 
 void Design::set_ridge(FunctionIdx idx) {
@@ -67,31 +69,42 @@ void Design::set_ridge(FunctionIdx idx) {
   if (idx < kLinearBase) {
     ridge_[idx] = idx == 0 ? 0.0f : kRidge.slope + kRidge.slope_growth * growth * total_weight_;
   } else {
-    const float covered = column(idx).dot(root_weight_.head(rows_));
+    const float covered = columns::dot(functions_[idx], root_weight_, padded_rows());
     ridge_[idx] = kRidge.bump + kRidge.bump_growth * growth * covered;
   }
 }
 
 void Design::set_ridge() {
-  total_weight_ = root_weight_.head(rows_).squaredNorm();
+  total_weight_ = columns::dot(root_weight_, root_weight_, padded_rows());
   for (FunctionIdx idx = 0; idx < kLinearBase + atoms().size(); ++idx) {
     if (evaluated_[idx]) set_ridge(idx);
   }
 }
 
 void Design::load(std::span<const DirectedColour> samples) {
+  constexpr float far_outside = 8.0f;
   assert(!samples.empty() && samples.size() <= kMaxStoredSamples && atoms().size() <= kMaxAtoms);
-  rows_ = static_cast<Eigen::Index>(samples.size());
-  weigh(samples);
+  rows_ = samples.size();
+  for (std::size_t row = 0; row < rows_; ++row) {
+    u_.row[row] = samples[row].uv.x();
+    v_.row[row] = samples[row].uv.y();
+  }
+  std::fill(u_.row + rows_, u_.row + padded_rows(), far_outside);
+  std::fill(v_.row + rows_, v_.row + padded_rows(), far_outside);
+  weigh();
   // Evaluate the base at every sample.
-  for (Eigen::Index row = 0; row < rows_; ++row) {
-    const DirectedColour& sample = samples[static_cast<std::size_t>(row)];
-    const float weight = root_weight_[row];
-    positions_.row(row) = sample.uv.transpose().array();
-    colours_.row(row) = weight * sample.rgb.transpose();
-    const float z = std::sqrt(std::max(0.0f, 1.0f - sample.uv.squaredNorm()));
-    functions_.row(row).head<4>() =
-        weight * Eigen::RowVector4f(1.0f, sample.uv.x(), sample.uv.y(), z);
+  for (std::size_t row = 0; row < padded_rows(); ++row) {
+    const float weight = root_weight_.row[row];
+    const Eigen::Vector3f rgb = row < rows_ ? samples[row].rgb : Eigen::Vector3f::Zero();
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      colours_[channel].row[row] = weight * rgb[static_cast<Eigen::Index>(channel)];
+    }
+    const float u = u_.row[row];
+    const float v = v_.row[row];
+    functions_[0].row[row] = weight;
+    functions_[1].row[row] = weight * u;
+    functions_[2].row[row] = weight * v;
+    functions_[3].row[row] = weight * std::sqrt(std::max(0.0f, 1.0f - u * u - v * v));
   }
   evaluated_.reset();
   for (FunctionIdx idx = 0; idx < kLinearBase; ++idx) evaluated_.set(idx);
@@ -102,14 +115,8 @@ void Design::evaluate(FunctionIdx idx) {
   if (evaluated_[idx]) return;
   evaluated_.set(idx);
   const Atom& atom = atoms()[idx - kLinearBase];
-  // Wendland's function without a branch, so that it runs over several samples at a time.
-  const float scale = 1.0f / (atom.support * atom.support);
-  const auto u = positions_.col(0).head(rows_) - atom.center.x();
-  const auto v = positions_.col(1).head(rows_) - atom.center.y();
-  auto column = functions_.col(static_cast<Eigen::Index>(idx)).head(rows_).array();
-  column = (scale * (u.square() + v.square())).min(1.0f).sqrt();
-  column =
-      root_weight_.head(rows_).array() * (1.0f - column).square().square() * (4.0f * column + 1.0f);
+  columns::wendland(u_, v_, root_weight_, padded_rows(), atom.center.x(), atom.center.y(),
+                    atom.support, functions_[idx]);
   set_ridge(idx);
 }
 
@@ -122,27 +129,33 @@ void Design::evaluate_all() {
 }
 
 void Design::reweigh(std::span<const float> factor) {
-  assert(static_cast<Eigen::Index>(factor.size()) == rows_);
-  for (Eigen::Index row = 0; row < rows_; ++row) {
-    const float root = std::sqrt(factor[static_cast<std::size_t>(row)]);
-    if (root == 1.0f) continue;
-    root_weight_[row] *= root;
-    functions_.row(row) *= root;
-    colours_.row(row) *= root;
+  assert(factor.size() == rows_);
+  Column root{};
+  for (std::size_t row = 0; row < rows_; ++row) root.row[row] = std::sqrt(factor[row]);
+  columns::scale(root, padded_rows(), root_weight_);
+  for (Column& channel : colours_) columns::scale(root, padded_rows(), channel);
+  for (FunctionIdx idx = 0; idx < kLinearBase + atoms().size(); ++idx) {
+    if (evaluated_[idx]) columns::scale(root, padded_rows(), functions_[idx]);
   }
   set_ridge();
 }
 
 void Design::set_colour(std::size_t sample_idx, const Eigen::Vector3f& rgb) {
-  const auto row = static_cast<Eigen::Index>(sample_idx);
-  colours_.row(row) = root_weight_[row] * rgb.transpose();
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    colours_[channel].row[sample_idx] =
+        root_weight_.row[sample_idx] * rgb[static_cast<Eigen::Index>(channel)];
+  }
 }
 
 void StepwiseFit::start(const Design& design) {
-  rows_ = design.rows();
+  rows_ = design.padded_rows();
   terms_.count = 0;
   degrees_of_freedom_ = 0;
-  residuals_.topRows(rows_) = design.colours();
+  squared_error_ = 0;
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    std::copy_n(design.colours(channel).row, rows_, residuals_[channel].row);
+    squared_error_ += columns::dot(residuals_[channel], residuals_[channel], rows_) / 3.0f;
+  }
 }
 
 bool StepwiseFit::push(const Design& design, FunctionIdx idx) {
@@ -150,28 +163,35 @@ bool StepwiseFit::push(const Design& design, FunctionIdx idx) {
   constexpr float smallest_pivot = 1e-5f;
   constexpr float smallest_norm = 1e-8f;
   assert(terms_.count < kMaxTerms);
-  const auto count = static_cast<Eigen::Index>(terms_.count);
-  auto direction = directions_.col(count).head(rows_);
-  direction = design.column(idx);
-  const float squared = direction.squaredNorm();
+  const std::size_t count = terms_.count;
+  Column& direction = directions_[count];
+  std::copy_n(design.column(idx).row, rows_, direction.row);
+  const float squared = columns::dot(direction, direction, rows_);
   if (idx >= kLinearBase && !(squared > smallest_norm)) return false;
   float pivot = squared + design.ridge(idx);
   if (count > 0) {
-    auto factor_row = factor_.row(count).head(count);
-    const auto earlier = directions_.topLeftCorner(rows_, count);
-    factor_row.noalias() = direction.transpose() * earlier;
-    direction.noalias() -= earlier * factor_row.transpose();
-    const float rest = pivot - factor_row.squaredNorm();
+    float* factor_row = factor_[count].data();
+    columns::dots(directions_.data(), count, direction, rows_, factor_row);
+    columns::subtract(directions_.data(), count, factor_row, rows_, direction);
+    float rest = pivot;
+    for (std::size_t k = 0; k < count; ++k) rest -= factor_row[k] * factor_row[k];
     if (idx >= kLinearBase && !(rest > smallest_pivot * pivot)) return false;
     pivot = std::max(rest, smallest_pivot * pivot);
   }
   // Normalise and project.
   const float root = std::sqrt(pivot);
-  factor_(count, count) = root;
-  direction /= root;
-  projections_.row(count).noalias() = direction.transpose() * design.colours();
-  residuals_.topRows(rows_).noalias() -= direction * projections_.row(count);
-  degrees_of_freedom_ += direction.squaredNorm();
+  factor_[count][count] = root;
+  const float per_root = 1.0f / root;
+  for (std::size_t row = 0; row < rows_; ++row) direction.row[row] *= per_root;
+  Eigen::Vector3f& projection = projections_[count];
+  squared_error_ = 0;
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    float& along = projection[static_cast<Eigen::Index>(channel)];
+    along = columns::dot(direction, design.colours(channel), rows_);
+    columns::subtract(&direction, 1, &along, rows_, residuals_[channel]);
+    squared_error_ += columns::dot(residuals_[channel], residuals_[channel], rows_) / 3.0f;
+  }
+  degrees_of_freedom_ += columns::dot(direction, direction, rows_);
   terms_.push(idx);
   return true;
 }
@@ -181,35 +201,29 @@ void StepwiseFit::build(const Design& design, const TermList& terms) {
   for (std::size_t i = 0; i < terms.count; ++i) push(design, terms.function[i]);
 }
 
-float StepwiseFit::squared_error() const {
-  return residuals_.topRows(rows_).squaredNorm() / 3.0f;
+void StepwiseFit::leverages(Column& out) const {
+  columns::squared_lengths(directions_.data(), terms_.count, rows_, out);
 }
 
-float StepwiseFit::leverage(std::size_t sample_idx) const {
-  return directions_.row(static_cast<Eigen::Index>(sample_idx))
-      .head(static_cast<Eigen::Index>(terms_.count))
-      .squaredNorm();
-}
-
-StepwiseFit::Coefficients StepwiseFit::coefficients(Eigen::Index count) const {
+StepwiseFit::Coefficients StepwiseFit::coefficients() const {
   // Substitute backwards: L^T c = projections.
   Coefficients c;
-  for (Eigen::Index row = count; row-- > 0;) {
-    Eigen::RowVector3f sum = projections_.row(row);
-    for (Eigen::Index k = row + 1; k < count; ++k) sum -= factor_(k, row) * c.row(k);
-    c.row(row) = sum / factor_(row, row);
+  for (std::size_t row = terms_.count; row-- > 0;) {
+    Eigen::Vector3f sum = projections_[row];
+    for (std::size_t k = row + 1; k < terms_.count; ++k) sum -= factor_[k][row] * c[k];
+    c[row] = sum / factor_[row][row];
   }
   return c;
 }
 
-PatchModel StepwiseFit::model(std::size_t count) const {
-  assert(count >= 1 && count <= terms_.count);
+PatchModel StepwiseFit::model() const {
+  assert(terms_.count >= 1);
   PatchModel model;
-  const Coefficients c = coefficients(static_cast<Eigen::Index>(count));
-  model.base_terms = std::min(count, terms_.base_terms());
-  model.bump_count = count - model.base_terms;
-  for (std::size_t i = 0; i < count; ++i) {
-    model.coefficient[i] = c.row(static_cast<Eigen::Index>(i));
+  const Coefficients c = coefficients();
+  model.base_terms = terms_.base_terms();
+  model.bump_count = terms_.bump_count();
+  for (std::size_t i = 0; i < terms_.count; ++i) {
+    model.coefficient[i] = c[i];
     if (i >= model.base_terms) {
       model.atom[i - model.base_terms] =
           static_cast<std::uint16_t>(terms_.function[i] - kLinearBase);
@@ -221,26 +235,26 @@ PatchModel StepwiseFit::model(std::size_t count) const {
 // Leaving out term j raises the penalised error by c_j^2 / (G^-1)_jj; the diagonal of the inverse
 // is the squared norm of column j of L^-1.
 std::size_t StepwiseFit::weakest_bump() const {
-  const auto count = static_cast<Eigen::Index>(terms_.count);
-  const Coefficients c = coefficients(count);
-  Eigen::Matrix<float, kTerms, 1> inverse_column;
-  std::size_t weakest = terms_.count;
+  const std::size_t count = terms_.count;
+  const Coefficients c = coefficients();
+  std::array<float, kMaxTerms> inverse_column;
+  std::size_t weakest = count;
   float smallest = std::numeric_limits<float>::infinity();
-  for (Eigen::Index j = count; j-- > static_cast<Eigen::Index>(terms_.base_terms());) {
+  for (std::size_t j = count; j-- > terms_.base_terms();) {
     float diagonal = 0;
-    for (Eigen::Index row = j; row < count; ++row) {
+    for (std::size_t row = j; row < count; ++row) {
       float sum = row == j ? 1.0f : 0.0f;
-      for (Eigen::Index k = j; k < row; ++k) sum -= factor_(row, k) * inverse_column[k];
-      inverse_column[row] = sum / factor_(row, row);
+      for (std::size_t k = j; k < row; ++k) sum -= factor_[row][k] * inverse_column[k];
+      inverse_column[row] = sum / factor_[row][row];
       diagonal += inverse_column[row] * inverse_column[row];
     }
-    const float loss = c.row(j).squaredNorm() / diagonal;
+    const float loss = c[j].squaredNorm() / diagonal;
     if (loss < smallest) {
       smallest = loss;
-      weakest = static_cast<std::size_t>(j);
+      weakest = j;
     }
   }
-  assert(weakest < terms_.count);
+  assert(weakest < count);
   return weakest;
 }
 

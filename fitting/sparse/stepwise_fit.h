@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "fitting/sparse/columns.h"
 #include "fitting/sparse/patch_model.h"
 #include "fitting/sparse/sample_store.h"
 
@@ -11,6 +12,7 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 
 namespace sheen::fitting::sparse {
@@ -28,6 +30,8 @@ struct TermList {
 
   void push(FunctionIdx idx) { function[count++] = static_cast<std::uint16_t>(idx); }
   void erase(std::size_t position);
+  [[nodiscard]] bool holds(FunctionIdx idx) const;
+  [[nodiscard]] bool operator==(const TermList& other) const;
   [[nodiscard]] std::size_t base_terms() const {
     return count > 1 && function[1] == 1 ? kLinearBase : kConstantBase;
   }
@@ -39,8 +43,8 @@ struct TermList {
 };
 
 /// Samples of one patch as a weighted least-squares problem over all functions. Rows are scaled by
-/// the square roots of the weights. Atoms are evaluated where they are asked for: most fits need a
-/// few of them. Large: keep one per thread.
+/// the square roots of the weights; rows behind the last sample are zero. Atoms are evaluated where
+/// they are asked for: most fits need a few of them. Large: keep one per thread.
 class Design {
  public:
   /// Takes 1 to kMaxStoredSamples samples. Each weighs one over the number of samples within its
@@ -58,33 +62,34 @@ class Design {
   /// Replaces a colour.
   void set_colour(std::size_t sample_idx, const Eigen::Vector3f& rgb);
 
-  [[nodiscard]] Eigen::Index rows() const { return rows_; }
+  [[nodiscard]] std::size_t rows() const { return rows_; }
+  [[nodiscard]] std::size_t padded_rows() const { return padded(rows_); }
   [[nodiscard]] float total_weight() const { return total_weight_; }
   /// Pull of a function's coefficient towards zero, in units of squared function values.
   [[nodiscard]] float ridge(FunctionIdx idx) const { return ridge_[idx]; }
-  [[nodiscard]] auto column(FunctionIdx idx) const {
+  [[nodiscard]] const Column& column(FunctionIdx idx) const {
     assert(evaluated_[idx]);
-    return functions_.col(static_cast<Eigen::Index>(idx)).head(rows_);
+    return functions_[idx];
   }
-  [[nodiscard]] auto colours() const { return colours_.topRows(rows_); }
+  /// All atoms, in order of their ids; after `evaluate_all`.
+  [[nodiscard]] const Column* atom_columns() const { return &functions_[kLinearBase]; }
+  [[nodiscard]] const Column& colours(std::size_t channel) const { return colours_[channel]; }
   [[nodiscard]] float root_weight(std::size_t sample_idx) const {
-    return root_weight_[static_cast<Eigen::Index>(sample_idx)];
+    return root_weight_.row[sample_idx];
   }
 
  private:
-  void weigh(std::span<const DirectedColour> samples);
+  void weigh();
   void set_ridge();
   void set_ridge(FunctionIdx idx);
 
-  static constexpr int kRows = static_cast<int>(kMaxStoredSamples);
-  Eigen::Index rows_ = 0;
+  std::size_t rows_ = 0;
   float total_weight_ = 0;
-  // On the heap: 160 KB are more than Eigen lets lie in an object.
-  Eigen::MatrixXf functions_ = Eigen::MatrixXf::Zero(kRows, static_cast<int>(kMaxFunctions));
+  std::unique_ptr<Column[]> functions_ = std::make_unique<Column[]>(kMaxFunctions);
   std::bitset<kMaxFunctions> evaluated_;
-  Eigen::Array<float, kRows, 2> positions_;
-  Eigen::Matrix<float, kRows, 3> colours_;
-  Eigen::Matrix<float, kRows, 1> root_weight_;
+  Column u_, v_;  // far outside the disc behind the last sample
+  Column root_weight_;
+  std::array<Column, 3> colours_;
   std::array<float, kMaxFunctions> ridge_{};
 };
 
@@ -105,38 +110,35 @@ class StepwiseFit {
   /// Trace of the hat matrix.
   [[nodiscard]] float degrees_of_freedom() const { return degrees_of_freedom_; }
   /// Weighted sum of squared residuals, mean over the channels.
-  [[nodiscard]] float squared_error() const;
+  [[nodiscard]] float squared_error() const { return squared_error_; }
   /// Row-scaled residuals.
-  [[nodiscard]] auto residuals() const { return residuals_.topRows(rows_); }
-  /// Diagonal of the hat matrix at a sample.
-  [[nodiscard]] float leverage(std::size_t sample_idx) const;
+  [[nodiscard]] const Column& residuals(std::size_t channel) const { return residuals_[channel]; }
+  /// Diagonal of the hat matrix.
+  void leverages(Column& out) const;
   /// Last direction that was added, orthonormal to the others with the ridge's rows; its
   /// projection of the colours.
-  [[nodiscard]] auto last_direction() const {
-    return directions_.col(static_cast<Eigen::Index>(terms_.count) - 1).head(rows_);
+  [[nodiscard]] const Column& last_direction() const { return directions_[terms_.count - 1]; }
+  [[nodiscard]] const Eigen::Vector3f& last_projection() const {
+    return projections_[terms_.count - 1];
   }
-  [[nodiscard]] Eigen::RowVector3f last_projection() const {
-    return projections_.row(static_cast<Eigen::Index>(terms_.count) - 1);
-  }
-  /// The first `count` terms as a model of their own.
-  [[nodiscard]] PatchModel model(std::size_t count) const;
+  /// The terms as a model.
+  [[nodiscard]] PatchModel model() const;
   /// Position of the bump whose loss costs the penalised fit least; there must be one.
   [[nodiscard]] std::size_t weakest_bump() const;
 
  private:
-  static constexpr int kRows = static_cast<int>(kMaxStoredSamples);
-  static constexpr int kTerms = static_cast<int>(kMaxTerms);
-  using Coefficients = Eigen::Matrix<float, kTerms, 3>;
+  using Coefficients = std::array<Eigen::Vector3f, kMaxTerms>;
+  [[nodiscard]] Coefficients coefficients() const;
 
-  [[nodiscard]] Coefficients coefficients(Eigen::Index count) const;
-
-  Eigen::Index rows_ = 0;
+  std::size_t rows_ = 0;  // padded
   TermList terms_;
   float degrees_of_freedom_ = 0;
-  Eigen::Matrix<float, kRows, kTerms> directions_;
-  Eigen::Matrix<float, kTerms, kTerms> factor_;  // lower triangular: Gram matrix = L L^T
-  Eigen::Matrix<float, kTerms, 3> projections_;
-  Eigen::Matrix<float, kRows, 3> residuals_;
+  float squared_error_ = 0;
+  std::array<Column, kMaxTerms> directions_;
+  // Lower triangular: Gram matrix = L L^T.
+  std::array<std::array<float, kMaxTerms>, kMaxTerms> factor_;
+  std::array<Eigen::Vector3f, kMaxTerms> projections_;
+  std::array<Column, 3> residuals_;
 };
 
 }  // namespace sheen::fitting::sparse
