@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/board.h"
+#include "app/commands/calibrate.h"
 #include "app/commands/capture.h"
 #include "app/commands/compare.h"
 #include "app/commands/evaluate.h"
 #include "app/commands/info.h"
+#include "app/commands/register.h"
 #include "app/commands/render.h"
 #include "app/commands/replay.h"
+#include "app/commands/survey.h"
 #include "app/commands/synth.h"
 #include "app/interrupt.h"
 #include "core/diagnostics/error.h"
@@ -47,6 +50,9 @@ int main(int argc, char** argv) {
   app::CommandContext context;
   app::add_board_command(program, context);
   app::add_capture_command(program, context);
+  app::add_calibrate_command(program, context);
+  app::add_survey_command(program, context);
+  app::add_register_command(program, context);
   app::add_replay_command(program, context);
   app::add_render_command(program, context);
   app::add_evaluate_command(program, context);

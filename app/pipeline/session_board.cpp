@@ -20,10 +20,10 @@ void thin_out(std::vector<std::vector<capture::TagDetection>>& views) {
 
 std::optional<capture::BoardRefinement> refine_session_board(
     const capture::Session& session, int start, std::optional<int> end,
-    const std::function<void(int frames_read)>& on_frame) {
+    const std::function<void(int frames_read)>& on_frame, capture::LensRefinement lens) {
   if (!session.board) {
     throw core::bad_input(session.folder / "session.json", "has no board to refine",
-                          "name a board.yaml under \"board\" or leave out --refine-board");
+                          "name a board.yaml under \"board\"");
   }
   const capture::Board board = capture::read_board(*session.board);
   capture::BoardTagFinder finder(board, session.camera);
@@ -39,7 +39,7 @@ std::optional<capture::BoardRefinement> refine_session_board(
     thin_out(views);
     stride *= 2;
   }
-  return capture::refine_board(board, session.camera, views);
+  return capture::refine_board(board, session.camera, views, lens);
 }
 
 }  // namespace sheen::app

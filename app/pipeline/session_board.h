@@ -15,6 +15,7 @@ namespace sheen::app {
 /// session without a board.
 std::optional<capture::BoardRefinement> refine_session_board(
     const capture::Session& session, int start, std::optional<int> end,
-    const std::function<void(int frames_read)>& on_frame);
+    const std::function<void(int frames_read)>& on_frame,
+    capture::LensRefinement lens = capture::LensRefinement::off);
 
 }  // namespace sheen::app

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "capture/pose/board_refinement.h"
 
+#include "capture/pose/bundle_residuals.h"
 #include "capture/pose/joint_pose.h"
-#include "core/alignment/projection_derivative.h"
 #include "core/numerics/median.h"
 
 #include <ceres/ceres.h>
-#include <ceres/rotation.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 
@@ -19,83 +17,6 @@ namespace {
 constexpr double kHuberPx = 1.0;
 constexpr int kMinViewsPerTag = 3;  // fewer leave a tag's place to the noise of its corners
 constexpr std::size_t kMinViews = 3;
-
-/// A rigid transform as Ceres moves it: rotation vector, translation.
-using Parameters = std::array<double, 6>;
-
-Parameters to_parameters(const Eigen::Isometry3d& transform) {
-  const Eigen::AngleAxisd rotation(transform.linear());
-  const Eigen::Vector3d r = rotation.angle() * rotation.axis();
-  const Eigen::Vector3d t = transform.translation();
-  return {r.x(), r.y(), r.z(), t.x(), t.y(), t.z()};
-}
-
-Eigen::Isometry3d to_isometry(const Parameters& p) {
-  Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();
-  const Eigen::Vector3d r(p[0], p[1], p[2]);
-  if (r.norm() > 0) {
-    transform.linear() = Eigen::AngleAxisd(r.norm(), r.normalized()).toRotationMatrix();
-  }
-  transform.translation() = Eigen::Vector3d(p[3], p[4], p[5]);
-  return transform;
-}
-
-/// Distance of the four corners of one tag in one view from where the layout puts them.
-class TagResidual {
- public:
-  TagResidual(const core::CameraModel& camera, const TagDetection& seen, double size_m)
-      : camera_(camera), seen_(seen), half_m_(size_m / 2) {}
-
-  template <typename T>
-  bool operator()(const T* camera_from_stage, const T* stage_from_tag, T* residuals) const {
-    constexpr std::array<std::array<int, 2>, 4> signs{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
-    for (std::size_t c = 0; c < 4; ++c) {
-      const T in_tag[3] = {T(signs[c][0] * half_m_), T(signs[c][1] * half_m_), T(0)};
-      T in_stage[3];
-      transform(stage_from_tag, in_tag, in_stage);
-      T in_camera[3];
-      transform(camera_from_stage, in_stage, in_camera);
-      if (!project(in_camera, residuals + 2 * c)) return false;
-      residuals[2 * c] -= seen_.corners_px[c].x();
-      residuals[2 * c + 1] -= seen_.corners_px[c].y();
-    }
-    return true;
-  }
-
- private:
-  template <typename T>
-  static void transform(const T* target_from_source, const T* point, T* result) {
-    ceres::AngleAxisRotatePoint(target_from_source, point, result);
-    for (int i = 0; i < 3; ++i) result[i] += target_from_source[3 + i];
-  }
-
-  bool project(const double* point, double* pixel) const {
-    const auto projected = camera_.project({point[0], point[1], point[2]});
-    if (!projected) return false;
-    pixel[0] = projected->x();
-    pixel[1] = projected->y();
-    return true;
-  }
-
-  /// The lens by its own derivative, chained to what the point depends on.
-  template <typename T, int N>
-  bool project(const ceres::Jet<T, N>* point, ceres::Jet<T, N>* pixel) const {
-    const auto projected =
-        core::project_with_derivative(camera_, {point[0].a, point[1].a, point[2].a});
-    if (!projected) return false;
-    for (int i = 0; i < 2; ++i) {
-      pixel[i].a = projected->pixel[i];
-      pixel[i].v = projected->pixel_by_point(i, 0) * point[0].v +
-                   projected->pixel_by_point(i, 1) * point[1].v +
-                   projected->pixel_by_point(i, 2) * point[2].v;
-    }
-    return true;
-  }
-
-  const core::CameraModel& camera_;
-  const TagDetection& seen_;
-  double half_m_;
-};
 
 /// A view that poses over the given board, with the detections that carry it.
 struct PosedView {
@@ -138,18 +59,37 @@ void drop_weak_links(std::vector<PosedView>& views) {
   }
 }
 
-/// Joint problem over views and tags; residuals are pixels.
+/// Joint problem over views, tags and, on request, the lens; residuals are pixels.
 class Adjustment {
  public:
   Adjustment(const Board& board, const core::CameraModel& camera, std::vector<PosedView>& views,
              std::map<int, Parameters>& tags) {
     for (PosedView& view : views) {
       for (const TagDetection& tag : view.tags) {
-        problem_.AddResidualBlock(new ceres::AutoDiffCostFunction<TagResidual, 8, 6, 6>(
-                                      new TagResidual(camera, tag, board.tags.at(tag.id).size_m)),
+        problem_.AddResidualBlock(tag_residual(camera, tag, board.tags.at(tag.id).size_m),
                                   new ceres::HuberLoss(kHuberPx), view.camera_from_stage.data(),
                                   tags[tag.id].data());
       }
+    }
+  }
+
+  Adjustment(const Board& board, LensParameters& lens, std::vector<PosedView>& views,
+             std::map<int, Parameters>& tags) {
+    for (PosedView& view : views) {
+      for (const TagDetection& tag : view.tags) {
+        problem_.AddResidualBlock(tag_and_lens_residual(tag, board.tags.at(tag.id).size_m),
+                                  new ceres::HuberLoss(kHuberPx), view.camera_from_stage.data(),
+                                  tags[tag.id].data(), lens.data());
+      }
+    }
+    // The higher radial terms are free only where the given lens has them.
+    std::vector<int> fixed;
+    for (std::size_t i = kFirstHighTerm; i < lens.size(); ++i) {
+      if (lens[i] == 0) fixed.push_back(static_cast<int>(i));
+    }
+    if (!fixed.empty()) {
+      problem_.SetManifold(lens.data(),
+                           new ceres::SubsetManifold(static_cast<int>(lens.size()), fixed));
     }
   }
 
@@ -214,10 +154,33 @@ double median_shift_m(const Board& given, const Board& refined,
   return core::upper_median(shifts_m);
 }
 
+/// Frees all tags but one, which holds the frame while Ceres works.
+void free_tags(Adjustment& adjustment, std::map<int, Parameters>& tags) {
+  for (auto& [id, tag] : tags) adjustment.hold(tag);
+  for (auto tag = std::next(tags.begin()); tag != tags.end(); ++tag) {
+    adjustment.release(tag->second);
+  }
+}
+
+/// Puts the moved tags into the board and lays them on the given ones, so that no single tag
+/// decides the frame.
+void lay_on_given(const Board& given, const std::map<int, Parameters>& tags, Board& refined) {
+  for (const auto& [id, tag] : tags) refined.tags.at(id).stage_from_tag = to_isometry(tag);
+  const Eigen::Affine3d back = given_from_refined(given, refined, tags);
+  const double scale = std::cbrt(back.linear().determinant());
+  for (const auto& [id, unused] : tags) {
+    auto& tag = refined.tags.at(id);
+    tag.stage_from_tag.translation() = back * tag.stage_from_tag.translation();
+    tag.stage_from_tag.linear() = back.linear() / scale * tag.stage_from_tag.linear();
+    tag.size_m *= scale;
+  }
+}
+
 }  // namespace
 
 std::optional<BoardRefinement> refine_board(const Board& board, const core::CameraModel& camera,
-                                            const std::vector<std::vector<TagDetection>>& views) {
+                                            const std::vector<std::vector<TagDetection>>& views,
+                                            LensRefinement lens_refinement) {
   // Start from every view's pose over the given board.
   std::vector<PosedView> posed = pose_views(board, camera, views);
   drop_weak_links(posed);
@@ -233,27 +196,26 @@ std::optional<BoardRefinement> refine_board(const Board& board, const core::Came
   // Measure the given board at its best poses.
   for (auto& [id, tag] : tags) adjustment.hold(tag);
   adjustment.solve();
-  BoardRefinement result{board, static_cast<int>(posed.size()), static_cast<int>(tags.size()), 0, 0,
-                         0};
+  BoardRefinement result;
+  result.board = board;
+  result.camera = camera;
+  result.views = static_cast<int>(posed.size());
+  result.tags = static_cast<int>(tags.size());
   result.rms_before_px = adjustment.rms_px();
 
-  // Free all tags but one, which holds the frame while Ceres works.
-  for (auto tag = std::next(tags.begin()); tag != tags.end(); ++tag) {
-    adjustment.release(tag->second);
-  }
+  // Free the tags, then the lens.
+  free_tags(adjustment, tags);
   adjustment.solve();
   result.rms_after_px = adjustment.rms_px();
-
-  // Lay the result on the given board, so that no single tag decides the frame.
-  for (const auto& [id, tag] : tags) result.board.tags.at(id).stage_from_tag = to_isometry(tag);
-  const Eigen::Affine3d back = given_from_refined(board, result.board, tags);
-  const double scale = std::cbrt(back.linear().determinant());
-  for (const auto& [id, unused] : tags) {
-    auto& tag = result.board.tags.at(id);
-    tag.stage_from_tag.translation() = back * tag.stage_from_tag.translation();
-    tag.stage_from_tag.linear() = back.linear() / scale * tag.stage_from_tag.linear();
-    tag.size_m *= scale;
+  if (lens_refinement == LensRefinement::on) {
+    LensParameters lens = lens_parameters(camera);
+    Adjustment with_lens(board, lens, posed, tags);
+    free_tags(with_lens, tags);
+    with_lens.solve();
+    result.rms_after_px = with_lens.rms_px();
+    result.camera = camera_with(lens, camera);
   }
+  lay_on_given(board, tags, result.board);
   result.median_shift_m = median_shift_m(board, result.board, tags);
   return result;
 }

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <random>
 
@@ -77,6 +78,48 @@ TEST(BoardRefinement, FindsDisplacedTagsToMachinePrecisionWithoutNoise) {
   EXPECT_LT(refinement->rms_after_px, 1e-6);
   EXPECT_GT(largest_difference_m(given, truth), 5e-4);
   EXPECT_LT(largest_difference_m(refinement->board, truth), 1e-9);
+}
+
+TEST(BoardRefinement, FindsTheLensWithTheTags) {
+  // Exact corners of displaced tags through one lens, explained at first through another: both the
+  // tags and the lens come back. The board's own scale is held by the layout, so 1e-4 is what is
+  // left of an unknown scale of the displaced tags (0.5 mm over 180 mm and 48 corners).
+  const unsigned seed = 7;
+  SCOPED_TRACE(seed);
+  const auto truth = make_camera(1280, 720, true);
+  const Board given = make_grid_board("tag36h11", 4, 3, 0.03, 0.045);
+  auto wrong = truth.intrinsics();
+  wrong.focal_px *= 1.01;
+  wrong.principal_px += Eigen::Vector2d(4, -3);
+  wrong.distortion[0] += 0.02;
+  const auto views = ideal_views(displaced(given, 0.0005, seed), truth, 16);
+  const auto fixed = refine_board(given, core::CameraModel(wrong), views);
+  const auto refined = refine_board(given, core::CameraModel(wrong), views, LensRefinement::on);
+  ASSERT_TRUE(fixed && refined);
+  EXPECT_LT(refined->rms_after_px, 1e-3);
+  EXPECT_GT(fixed->rms_after_px, 100 * refined->rms_after_px);
+  const auto& found = refined->camera.intrinsics();
+  EXPECT_LT((found.focal_px - truth.intrinsics().focal_px).norm(), 0.1);
+  EXPECT_LT((found.principal_px - truth.intrinsics().principal_px).norm(), 0.1);
+  EXPECT_EQ(found.distortion[5], 0) << "terms the given lens lacks stay out";
+}
+
+TEST(BoardRefinement, FindsCurledPaper) {
+  // A sheet bent to an arc of 1.5 m: 3 mm at the rim of 190 mm; tags follow it in height and tilt.
+  const auto camera = make_camera(1280, 720, true);
+  const Board flat = make_grid_board("tag36h11", 5, 3, 0.03, 0.04);
+  Board curled = flat;
+  for (auto& [id, tag] : curled.tags) {
+    const double angle = tag.stage_from_tag.translation().x() / 1.5;
+    tag.stage_from_tag.translation().x() = 1.5 * std::sin(angle);
+    tag.stage_from_tag.translation().z() = 1.5 * (1 - std::cos(angle));
+    tag.stage_from_tag.rotate(Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitY()));
+  }
+  const auto refinement = refine_board(flat, camera, ideal_views(curled, camera, 16));
+  ASSERT_TRUE(refinement);
+  EXPECT_GT(refinement->rms_before_px, 1);
+  EXPECT_LT(refinement->rms_after_px, 1e-6);
+  EXPECT_LT(largest_difference_m(refinement->board, curled), 1e-8);
 }
 
 TEST(BoardRefinement, KeepsTheStageFrameOfTheGivenBoard) {

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+#include "app/commands/calibrate.h"
+
+#include "app/interrupt.h"
+#include "capture/calibration/calibrate_camera.h"
+#include "capture/calibration/calibration_pictures.h"
+#include "capture/calibration/camera_file.h"
+#include "capture/calibration/coverage_picture.h"
+#include "core/diagnostics/error.h"
+#include "core/files/staged_output.h"
+#include "core/image/write_image.h"
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include <cstdio>
+#include <numbers>
+
+namespace sheen::app {
+namespace {
+
+constexpr std::size_t kMostCandidates = 120;
+
+struct CalibrateOptions {
+  std::filesystem::path source;
+  std::filesystem::path output;
+  std::filesystem::path board;
+  std::filesystem::path picture;
+  std::string chessboard;
+  double square_mm = 25;
+  int views = 40;
+};
+
+/// Views of the target with their pictures, which are needed once more when the lens is known.
+struct Candidates {
+  std::vector<capture::TargetView> views;
+  std::vector<cv::Mat> pictures;
+  capture::PictureSize size;
+  int frames = 0;
+
+  /// Keeps every second: the source is longer than needed.
+  void thin_out() {
+    const std::size_t half = (views.size() + 1) / 2;
+    for (std::size_t i = 1; i < half; ++i) {
+      views[i] = std::move(views[2 * i]);
+      pictures[i] = pictures[2 * i];
+    }
+    views.resize(half);
+    pictures.resize(half);
+  }
+};
+
+/// "9x6": inner corners across and down; empty when it is fine, else what is wrong.
+std::string parse_chessboard(const std::string& text, capture::Chessboard& board) {
+  int used = 0;
+  const bool complete =
+      std::sscanf(text.c_str(), "%3dx%3d%n", &board.columns, &board.rows, &used) == 2 &&
+      static_cast<std::size_t>(used) == text.size();
+  if (!complete || board.columns < 3 || board.rows < 3) {
+    return "must be COLUMNSxROWS of inner corners, for instance 9x6";
+  }
+  return {};
+}
+
+capture::CalibrationTarget target_of(const CalibrateOptions& options) {
+  if (!options.board.empty()) return capture::read_board(options.board);
+  capture::Chessboard chessboard;
+  parse_chessboard(options.chessboard, chessboard);
+  chessboard.square_m = options.square_mm / 1000;
+  return chessboard;
+}
+
+Candidates find_candidates(const CalibrateOptions& options, capture::TargetFinder& finder,
+                           const CommandContext& context) {
+  const auto frames = capture::open_calibration_pictures(options.source);
+  Progress progress = context.progress("looking for the target", frames->frame_count().value_or(0));
+  Candidates candidates;
+  int stride = 1;
+  while (const auto frame = frames->next()) {
+    throw_if_interrupted();
+    progress.show(++candidates.frames, fmt::format("{} found", candidates.views.size()));
+    candidates.size = {frame->image.cols, frame->image.rows};
+    if (frame->index % stride != 0) continue;
+    cv::Mat grey;
+    cv::cvtColor(frame->image, grey, cv::COLOR_BGR2GRAY);
+    auto view = finder.find(grey);
+    if (!view) continue;
+    view->frame_index = frame->index;
+    candidates.views.push_back(std::move(*view));
+    candidates.pictures.push_back(grey);
+    if (candidates.views.size() < kMostCandidates) continue;
+    candidates.thin_out();
+    stride *= 2;
+  }
+  return candidates;
+}
+
+/// Calibrates, measures the points again through the lens that was found, calibrates again.
+std::optional<capture::Calibration> calibrate(const CalibrateOptions& options,
+                                              const capture::TargetFinder& finder,
+                                              const Candidates& candidates) {
+  auto views = capture::choose_spread_views(candidates.views, candidates.size,
+                                            static_cast<std::size_t>(options.views));
+  const auto first = capture::calibrate_camera(views, candidates.size);
+  if (!first) return std::nullopt;
+  for (capture::TargetView& view : views) {
+    for (std::size_t i = 0; i < candidates.views.size(); ++i) {
+      if (candidates.views[i].frame_index != view.frame_index) continue;
+      finder.refine(candidates.pictures[i], first->camera, view);
+    }
+  }
+  return capture::calibrate_camera(views, candidates.size);
+}
+
+std::string describe(const capture::Calibration& found) {
+  const auto& lens = found.camera.intrinsics();
+  const auto& k = lens.distortion;
+  std::string text = fmt::format(
+      "focal      {:.2f} {:.2f} px  (+- {:.2f} {:.2f})\n"
+      "principal  {:.2f} {:.2f} px  (+- {:.2f} {:.2f})\n"
+      "distortion k1 {:.5f}  k2 {:.5f}  p1 {:.5f}  p2 {:.5f}  k3 {:.5f}\n"
+      "error      {:.3f} px RMS over {} views\n"
+      "coverage   {:.0f} % of the picture area; tilts differ by up to {:.0f} degrees\n\n"
+      " frame  points  error px\n",
+      lens.focal_px.x(), lens.focal_px.y(), found.focal_sigma_px.x(), found.focal_sigma_px.y(),
+      lens.principal_px.x(), lens.principal_px.y(), found.principal_sigma_px.x(),
+      found.principal_sigma_px.y(), k[0], k[1], k[2], k[3], k[4], found.rms_px, found.views.size(),
+      100 * found.coverage, found.tilt_spread_rad * 180 / std::numbers::pi);
+  for (const auto& view : found.views) {
+    text += fmt::format("{:6} {:7} {:9.3f}\n", view.points.frame_index,
+                        view.points.on_target.size(), view.rms_px);
+  }
+  if (!found.dropped.empty()) {
+    text += fmt::format("left out, far worse than the others: {}\n", fmt::join(found.dropped, " "));
+  }
+  return text + "\n";
+}
+
+nlohmann::ordered_json to_json(const capture::Calibration& found, int frames) {
+  nlohmann::ordered_json views = nlohmann::ordered_json::array();
+  for (const auto& view : found.views) {
+    views.push_back({{"frame", view.points.frame_index},
+                     {"points", view.points.on_target.size()},
+                     {"rms_px", view.rms_px}});
+  }
+  const auto& lens = found.camera.intrinsics();
+  return {{"size_px", {lens.width_px, lens.height_px}},
+          {"focal_px", {lens.focal_px.x(), lens.focal_px.y()}},
+          {"focal_sigma_px", {found.focal_sigma_px.x(), found.focal_sigma_px.y()}},
+          {"principal_px", {lens.principal_px.x(), lens.principal_px.y()}},
+          {"principal_sigma_px", {found.principal_sigma_px.x(), found.principal_sigma_px.y()}},
+          {"distortion", lens.distortion},
+          {"rms_px", found.rms_px},
+          {"coverage", found.coverage},
+          {"tilt_spread_deg", found.tilt_spread_rad * 180 / std::numbers::pi},
+          {"frames_read", frames},
+          {"views", views},
+          {"dropped", found.dropped}};
+}
+
+[[noreturn]] void refuse(const CalibrateOptions& options, const std::string& faults) {
+  throw core::bad_input(options.source, "cannot be calibrated from: " + faults,
+                        "move the target through the whole picture, near and far, tilted to all "
+                        "sides by 30 degrees");
+}
+
+void run_calibrate(const CalibrateOptions& options, const CommandContext& context) {
+  for (const auto& path : {options.output, options.picture, context.report_path}) {
+    if (!path.empty()) core::check_writable(path);
+  }
+  const auto finder = capture::make_target_finder(target_of(options));
+  const Candidates candidates = find_candidates(options, *finder, context);
+  const auto found = calibrate(options, *finder, candidates);
+  if (!found) {
+    refuse(options, fmt::format("{} of {} pictures show the target", candidates.views.size(),
+                                candidates.frames));
+  }
+  if (!options.picture.empty()) core::write_image(options.picture, capture::draw_coverage(*found));
+  if (const auto faults = capture::find_faults(*found, {}); !faults.empty()) {
+    refuse(options, fmt::format("{}", fmt::join(faults, "; ")));
+  }
+  capture::write_camera(options.output, found->camera);
+  context.publish(to_json(*found, candidates.frames),
+                  describe(*found) + fmt::format("written  {}\n", options.output.string()));
+}
+
+}  // namespace
+
+void add_calibrate_command(CLI::App& program, CommandContext& context) {
+  auto options = std::make_shared<CalibrateOptions>();
+  CLI::App* command = program.add_subcommand(
+      "calibrate", "Measure a camera's lens from pictures of a printed board or chessboard");
+  command->footer(
+      "Examples:\n"
+      "  sheen board -o grid.pdf --full --tag-mm 25\n"
+      "  sheen calibrate walk.mp4 --board grid.yaml -o camera.yaml --picture coverage.png\n"
+      "  sheen calibrate photos/ --chessboard 9x6 --square-mm 25 -o camera.yaml\n"
+      "Lock focus and zoom first. Move the target through the whole picture, its corners too,\n"
+      "near and far, tilted to all sides by 30 degrees and more.");
+  command
+      ->add_option("source", options->source,
+                   "Video, folder of pictures, or session folder (its recording is taken)")
+      ->required();
+  command->add_option("-o,--output", options->output, "Camera file to write")
+      ->required()
+      ->type_name("camera.yaml");
+  auto* target = command->add_option_group("target", "What the pictures show");
+  target->add_option("--board", options->board, "A board of tags, such as sheen board prints")
+      ->type_name("FILE.yaml");
+  target
+      ->add_option("--chessboard", options->chessboard,
+                   "A chessboard with this many inner corners across and down")
+      ->check([](const std::string& text) {
+        capture::Chessboard board;
+        return parse_chessboard(text, board);
+      })
+      ->type_name("COLUMNSxROWS");
+  target->require_option(1);
+  command->add_option("--square-mm", options->square_mm, "Side of the chessboard's squares")
+      ->check(CLI::Range(0.1, 10'000.0).description(""))
+      ->type_name("MM")
+      ->capture_default_str();
+  command->add_option("--views", options->views, "Pictures to calibrate from, chosen for spread")
+      ->check(CLI::Range(3, 100).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--picture", options->picture,
+                   "Also draw where points were seen and by how much they miss")
+      ->type_name("FILE.png");
+  add_common_options(*command, context);
+  command->callback([options, &context] { run_calibrate(*options, context); });
+}
+
+}  // namespace sheen::app

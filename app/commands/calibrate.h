@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "app/commands/command_context.h"
+
+namespace sheen::app {
+
+/// `sheen calibrate SOURCE -o camera.yaml`: intrinsics and distortion from pictures of a target.
+void add_calibrate_command(CLI::App& program, CommandContext& context);
+
+}  // namespace sheen::app

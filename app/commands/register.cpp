@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+#include "app/commands/register.h"
+
+#include "app/commands/session_options.h"
+#include "app/interrupt.h"
+#include "capture/registration/placement.h"
+#include "capture/registration/registration.h"
+#include "capture/registration/registration_picture.h"
+#include "capture/registration/view_choice.h"
+#include "capture/session/session_edit.h"
+#include "core/diagnostics/error.h"
+#include "core/files/staged_output.h"
+#include "core/image/write_image.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <numbers>
+
+namespace sheen::app {
+namespace {
+
+constexpr std::size_t kPictureViews = 6;
+constexpr std::size_t kTrialViews = 10;
+constexpr int kTurns = 12;              // first guesses of an upright object about z
+constexpr double kTrialSearchM = 0.03;  // between two turns of an object of 15 cm
+
+struct RegisterOptions {
+  SessionOptions session;
+  std::filesystem::path output;
+  std::filesystem::path pairs;
+  std::filesystem::path picture;
+  std::string guess = "session";
+  double search_mm = 20;
+  int views = 40;
+};
+
+/// The chosen pictures with their cameras, and which frames they are.
+struct Views {
+  std::vector<capture::RegistrationView> views;
+  std::vector<int> frame_indices;
+};
+
+/// Every `n`-th so that `most` are left.
+template <typename T>
+std::vector<T> thin_out(const std::vector<T>& all, std::size_t most) {
+  const std::size_t count = std::min(all.size(), most);
+  std::vector<T> some;
+  for (std::size_t i = 0; i < count; ++i)
+    some.push_back(all[(2 * i + 1) * all.size() / (2 * count)]);
+  return some;
+}
+
+std::vector<capture::ChosenView> choose_frames(const capture::Session& session,
+                                               const RegisterOptions& options,
+                                               const Eigen::Vector3d& centre,
+                                               const CommandContext& context) {
+  Progress progress = context.progress("posing", 0);
+  std::vector<capture::PosedFrameIndex> posed;
+  for (const PosedFrame& frame :
+       pose_frames(session, options.session, [&](int read) { progress.show(read); })) {
+    posed.push_back({frame.index, frame.camera_from_stage});
+  }
+  return capture::choose_views(posed, session.camera, centre, options.views);
+}
+
+Views read_views(const capture::Session& session, const RegisterOptions& options,
+                 const std::vector<capture::ChosenView>& chosen) {
+  Views result;
+  const auto frames = capture::open_frames(session, options.session.start, options.session.end);
+  auto next = chosen.begin();
+  while (next != chosen.end()) {
+    const auto frame = frames->next();
+    if (!frame) break;
+    throw_if_interrupted();
+    if (frame->index != next->frame.index) continue;
+    result.views.push_back({frame->image.clone(), next->frame.camera_from_stage, next->weight});
+    result.frame_indices.push_back(frame->index);
+    ++next;
+  }
+  return result;
+}
+
+/// The turn about z whose outline finds most edges.
+Eigen::Isometry3d best_turn(const capture::Session& session, const core::Mesh& mesh,
+                            const Views& views) {
+  const auto some = thin_out(views.views, kTrialViews);
+  Eigen::Isometry3d best = capture::place_upright(mesh, 0);
+  double best_score = 0;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    throw_if_interrupted();
+    const auto guess = capture::place_upright(mesh, 2 * std::numbers::pi * turn / kTurns);
+    const auto found =
+        capture::register_object(mesh, session.camera, some, guess, {.search_m = kTrialSearchM});
+    if (!found) continue;
+    const double score = found->matched_share / (1 + found->residual_px);
+    if (score <= best_score) continue;
+    best_score = score;
+    best = found->stage_from_object;
+  }
+  return best;
+}
+
+std::string describe(const capture::Registration& found) {
+  constexpr double degrees = 180 / std::numbers::pi;
+  return fmt::format(
+      "residual    {:.2f} px (median), {:.0f} % of the outline on an edge, {} views\n"
+      "moved       {:.2f} mm and {:.2f} degrees ({:.1f} px in the pictures)\n"
+      "uncertainty {:.3f} mm and {:.3f} degrees (standard deviation, worst direction)\n",
+      found.residual_px, 100 * found.matched_share, found.views, 1e3 * found.translation_m,
+      degrees * found.rotation_rad, found.motion_px, 1e3 * found.sigma_m,
+      degrees * found.sigma_rad);
+}
+
+nlohmann::ordered_json to_json(const capture::Registration& found) {
+  constexpr double degrees = 180 / std::numbers::pi;
+  std::vector<double> numbers;
+  for (int i = 0; i < 16; ++i) numbers.push_back(found.stage_from_object.matrix()(i / 4, i % 4));
+  return {{"T_stage_object", numbers},
+          {"residual_px", found.residual_px},
+          {"matched_share", found.matched_share},
+          {"views", found.views},
+          {"points", found.points},
+          {"moved",
+           {{"mm", 1e3 * found.translation_m},
+            {"degrees", degrees * found.rotation_rad},
+            {"px", found.motion_px}}},
+          {"sigma", {{"mm", 1e3 * found.sigma_m}, {"degrees", degrees * found.sigma_rad}}}};
+}
+
+void write_picture(const RegisterOptions& options, const capture::Session& session,
+                   const core::Mesh& mesh, const Views& views, const Eigen::Isometry3d& before,
+                   const capture::Registration& found) {
+  std::vector<std::string> labels;
+  for (std::size_t v = 0; v < views.views.size(); ++v) {
+    labels.push_back(
+        fmt::format("frame {}{}", views.frame_indices[v], found.agrees[v] ? "" : ", set aside"));
+  }
+  core::write_image(
+      options.picture,
+      capture::draw_registration(mesh, session.camera, thin_out(views.views, kPictureViews),
+                                 thin_out(labels, kPictureViews), before, found.stage_from_object));
+}
+
+/// Where the search begins: picked pairs, upright on the stage, or what the session says.
+Eigen::Isometry3d first_guess(const RegisterOptions& options, const capture::Session& session,
+                              const core::Mesh& mesh, const CommandContext& context) {
+  if (!options.pairs.empty()) {
+    const auto placement =
+        capture::place_by_pairs(capture::read_point_pairs(options.pairs), options.pairs);
+    context.note(fmt::format("note: the pairs fit each other to {:.1f} mm", 1e3 * placement.rms_m));
+    return placement.stage_from_object;
+  }
+  if (options.guess == "upright") return capture::place_upright(mesh, 0);
+  return session.stage_from_object;
+}
+
+void run_register(const RegisterOptions& options, const CommandContext& context) {
+  const auto session_file = options.session.folder / "session.json";
+  const auto output = options.output.empty() ? session_file : options.output;
+  for (const auto& path : {output, options.picture, context.report_path}) {
+    if (!path.empty()) core::check_writable(path);
+  }
+  const capture::Session session = capture::open_session(options.session.folder);
+  for (const std::string& warning : session.warnings) context.note("note: " + warning);
+  const core::Mesh mesh = read_session_mesh(session);
+
+  // Guess, then align.
+  Eigen::Isometry3d guess = first_guess(options, session, mesh, context);
+  Eigen::AlignedBox3d box;
+  for (const auto& p : mesh.positions) box.extend(p.cast<double>());
+  const auto chosen = choose_frames(session, options, guess * box.center(), context);
+  const Views views = read_views(session, options, chosen);
+  if (options.pairs.empty() && options.guess == "upright") guess = best_turn(session, mesh, views);
+  const auto found = capture::register_object(mesh, session.camera, views.views, guess,
+                                              {.search_m = options.search_mm / 1000});
+  if (!found) {
+    throw core::bad_input(options.session.folder, "the object's outline finds too few edges",
+                          "give a better start by --pairs or a larger --search-mm");
+  }
+
+  // Save.
+  if (!options.picture.empty()) {
+    write_picture(options, session, mesh, views, guess, *found);
+  }
+  std::string kept;
+  std::error_code no_throw;
+  if (std::filesystem::equivalent(output, session_file, no_throw)) {
+    kept = fmt::format("kept     {}\n", capture::keep_before(session_file, "register").string());
+  }
+  capture::write_stage_from_object(session_file, output, found->stage_from_object);
+  context.publish(to_json(*found),
+                  describe(*found) + fmt::format("written  {}\n", output.string()) + kept);
+}
+
+}  // namespace
+
+void add_register_command(CLI::App& program, CommandContext& context) {
+  auto options = std::make_shared<RegisterOptions>();
+  CLI::App* command = program.add_subcommand(
+      "register",
+      "Find where the mesh stands on the stage: lay its outline on the pictures' edges");
+  command->footer(
+      "Examples:\n"
+      "  sheen register SESSION --picture check.png      improve session.json's T_stage_object\n"
+      "  sheen register SESSION --guess upright          z up, near the stage's centre, any turn\n"
+      "  sheen register SESSION --pairs picked.txt       start from picked points; one a line:\n"
+      "                                                  x y z in the mesh  x y z on the stage\n"
+      "The session.json it replaces is kept as session.before-register.json.");
+  command->add_option("session", options->session.folder, "Session folder")->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "Write the changed session.json here (default: into the session)")
+      ->type_name("FILE");
+  command->add_option("--guess", options->guess, "Where to start: session or upright")
+      ->check(CLI::IsMember({"session", "upright"}))
+      ->capture_default_str();
+  command->add_option("--pairs", options->pairs, "Start from three or more picked pairs of points")
+      ->type_name("FILE");
+  command
+      ->add_option("--search-mm", options->search_mm, "How far the outline may be off at the start")
+      ->check(CLI::Range(1.0, 200.0).description(""))
+      ->type_name("MM")
+      ->capture_default_str();
+  command->add_option("--views", options->views, "Frames to look at, spread over the recording")
+      ->check(CLI::Range(3, 1000).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--picture", options->picture,
+                   "Also draw the outline over six frames, before and after")
+      ->type_name("FILE.png");
+  add_session_options(*command, options->session);
+  add_common_options(*command, context);
+  command->callback([options, &context] { run_register(*options, context); });
+}
+
+}  // namespace sheen::app

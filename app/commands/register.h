@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "app/commands/command_context.h"
+
+namespace sheen::app {
+
+/// `sheen register SESSION`: where the mesh stands on the stage, from the pictures.
+void add_register_command(CLI::App& program, CommandContext& context);
+
+}  // namespace sheen::app

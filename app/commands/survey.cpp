@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include "app/commands/survey.h"
+
+#include "app/pipeline/session_board.h"
+#include "capture/calibration/camera_file.h"
+#include "capture/pose/board_change.h"
+#include "capture/session/session_edit.h"
+#include "core/diagnostics/error.h"
+#include "core/files/staged_output.h"
+#include "core/image/write_image.h"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+namespace sheen::app {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+struct SurveyOptions {
+  std::filesystem::path session;
+  std::filesystem::path output;
+  std::filesystem::path camera_output;
+  std::filesystem::path picture;
+  int start = 0;
+  std::optional<int> end;
+};
+
+/// What the survey found, in one number each.
+struct Summary {
+  double largest_mm = 0;
+  int largest_id = 0;
+  double height_mm = 0;  ///< from the lowest to the highest centre
+  double tilt_deg = 0;   ///< the largest
+};
+
+Summary summarise(const capture::BoardRefinement& found,
+                  const std::vector<capture::TagChange>& changes) {
+  Summary summary;
+  double low = 0;
+  double high = 0;
+  for (const capture::TagChange& change : changes) {
+    const double shift_mm = 1e3 * change.shift_m.norm();
+    if (shift_mm > summary.largest_mm) {
+      summary.largest_mm = shift_mm;
+      summary.largest_id = change.id;
+    }
+    summary.tilt_deg = std::max(summary.tilt_deg, kDegrees * change.tilt_rad);
+    const double z = found.board.tags.at(change.id).stage_from_tag.translation().z();
+    low = std::min(low, z);
+    high = std::max(high, z);
+  }
+  summary.height_mm = 1e3 * (high - low);
+  return summary;
+}
+
+std::string describe(const capture::BoardRefinement& found,
+                     const std::vector<capture::TagChange>& changes) {
+  const Summary summary = summarise(found, changes);
+  std::string text = fmt::format(
+      "before   {:.2f} px RMS over the tags' corners\n"
+      "after    {:.2f} px, {} views, {} tags\n"
+      "moved    {:.2f} mm (median), {:.2f} mm at most (tag {}); heights span {:.2f} mm, tilt up to "
+      "{:.2f} degrees\n\n"
+      "   tag     x mm     y mm     z mm  tilt deg\n",
+      found.rms_before_px, found.rms_after_px, found.views, found.tags, 1e3 * found.median_shift_m,
+      summary.largest_mm, summary.largest_id, summary.height_mm, summary.tilt_deg);
+  for (const capture::TagChange& change : changes) {
+    text +=
+        fmt::format("{:6} {:8.2f} {:8.2f} {:8.2f} {:9.2f}\n", change.id, 1e3 * change.shift_m.x(),
+                    1e3 * change.shift_m.y(), 1e3 * change.shift_m.z(), kDegrees * change.tilt_rad);
+  }
+  return text + "\n";
+}
+
+nlohmann::ordered_json to_json(const capture::BoardRefinement& found,
+                               const std::vector<capture::TagChange>& changes) {
+  nlohmann::ordered_json tags = nlohmann::ordered_json::array();
+  for (const capture::TagChange& change : changes) {
+    const Eigen::Vector3d shift_mm = 1e3 * change.shift_m;
+    tags.push_back({{"id", change.id},
+                    {"shift_mm", {shift_mm.x(), shift_mm.y(), shift_mm.z()}},
+                    {"tilt_deg", kDegrees * change.tilt_rad}});
+  }
+  const auto& lens = found.camera.intrinsics();
+  return {{"views", found.views},
+          {"tags", found.tags},
+          {"rms_before_px", found.rms_before_px},
+          {"rms_after_px", found.rms_after_px},
+          {"median_shift_mm", 1e3 * found.median_shift_m},
+          {"focal_px", {lens.focal_px.x(), lens.focal_px.y()}},
+          {"principal_px", {lens.principal_px.x(), lens.principal_px.y()}},
+          {"distortion", lens.distortion},
+          {"changes", tags}};
+}
+
+/// Writes a file; one of that name is kept beside it first. Returns the lines that say so.
+template <typename Write>
+std::string write_keeping(const std::filesystem::path& path, const Write& write) {
+  std::string lines;
+  std::error_code no_throw;
+  if (std::filesystem::is_regular_file(path, no_throw)) {
+    lines = fmt::format("kept     {}\n", capture::keep_before(path, "survey").string());
+  }
+  write();
+  return fmt::format("written  {}\n", path.string()) + lines;
+}
+
+void run_survey(SurveyOptions options, const CommandContext& context) {
+  if (options.output.empty()) options.output = options.session / "board.surveyed.yaml";
+  for (const auto& path :
+       {options.output, options.camera_output, options.picture, context.report_path}) {
+    if (!path.empty()) core::check_writable(path);
+  }
+  const capture::Session session = capture::open_session(options.session);
+  for (const std::string& warning : session.warnings) context.note("note: " + warning);
+  const auto lens =
+      options.camera_output.empty() ? capture::LensRefinement::off : capture::LensRefinement::on;
+  std::optional<capture::BoardRefinement> found;
+  {
+    Progress progress = context.progress("surveying", 0);
+    found = refine_session_board(
+        session, options.start, options.end, [&](int read) { progress.show(read); }, lens);
+  }
+  if (!found) {
+    throw core::bad_input(options.session, "its pictures do not tell where the tags lie",
+                          "record at least three views with two or more tags each");
+  }
+
+  const capture::Board given = capture::read_board(*session.board);
+  const auto changes = capture::compare_boards(given, found->board);
+  std::string written =
+      write_keeping(options.output, [&] { capture::write_board(options.output, found->board); });
+  if (!options.camera_output.empty()) {
+    written += write_keeping(options.camera_output,
+                             [&] { capture::write_camera(options.camera_output, found->camera); });
+  }
+  if (!options.picture.empty()) {
+    core::write_image(options.picture, capture::draw_board_change(given, found->board));
+  }
+  context.publish(to_json(*found, changes), describe(*found, changes) + written);
+}
+
+}  // namespace
+
+void add_survey_command(CLI::App& program, CommandContext& context) {
+  auto options = std::make_shared<SurveyOptions>();
+  CLI::App* command = program.add_subcommand(
+      "survey", "Find where the tags really lie: paper curls, tags are stuck by hand");
+  command->footer(
+      "Examples:\n"
+      "  sheen survey SESSION                          write SESSION/board.surveyed.yaml and "
+      "compare\n"
+      "  sheen survey SESSION -o SESSION/board.yaml    use it; the old one stays as\n"
+      "                                                board.before-survey.yaml\n"
+      "  sheen survey SESSION --refine-camera SESSION/camera.yaml    the lens, too");
+  command->add_option("session", options->session, "Session folder")->required();
+  command
+      ->add_option("-o,--output", options->output,
+                   "Board to write (default: board.surveyed.yaml in the session)")
+      ->type_name("FILE.yaml");
+  command
+      ->add_option("--refine-camera", options->camera_output,
+                   "Refine the lens, too, and write it here; wants views from many tilts")
+      ->type_name("FILE.yaml");
+  command
+      ->add_option("--picture", options->picture,
+                   "Also draw the board from above, before and after")
+      ->type_name("FILE.png");
+  command->add_option("--start", options->start, "First frame")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--end", options->end, "One past the last frame (default: all)")
+      ->check(CLI::PositiveNumber);
+  add_common_options(*command, context);
+  command->callback([options, &context] { run_survey(*options, context); });
+}
+
+}  // namespace sheen::app

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "app/commands/command_context.h"
+
+namespace sheen::app {
+
+/// `sheen survey SESSION -o board.yaml`: where the tags really lie, from the pictures.
+void add_survey_command(CLI::App& program, CommandContext& context);
+
+}  // namespace sheen::app

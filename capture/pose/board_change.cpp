@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+#include "capture/pose/board_change.h"
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace sheen::capture {
+namespace {
+
+constexpr double kSidePx = 760;
+constexpr int kMarginPx = 40;
+constexpr int kLegendPx = 44;
+const cv::Scalar kPaper(250, 250, 250);
+const cv::Scalar kInk(60, 55, 50);
+const cv::Scalar kBefore(200, 200, 200);
+const cv::Scalar kLevel(200, 120, 40);
+const cv::Scalar kHigher(50, 60, 210);
+const cv::Scalar kLower(70, 150, 40);
+
+/// Stage metres -> pixels, y up on the stage.
+struct Map {
+  Eigen::Vector2d corner_m;  ///< lower left
+  double scale = 1;
+  double height_px = 0;
+
+  [[nodiscard]] cv::Point2d at(const Eigen::Vector3d& p) const {
+    return {kMarginPx + (p.x() - corner_m.x()) * scale,
+            height_px - kMarginPx - (p.y() - corner_m.y()) * scale};
+  }
+};
+
+cv::Point subpixel(const cv::Point2d& p) {
+  return {cvRound(p.x * 16), cvRound(p.y * 16)};  // 4 fractional bits
+}
+
+void draw_tag(cv::Mat& picture, const Map& map, const Board::Tag& tag, const cv::Scalar& colour,
+              bool filled) {
+  std::vector<cv::Point> outline;
+  for (const Eigen::Vector3d& corner : tag.corners_in_stage()) {
+    outline.push_back(subpixel(map.at(corner)));
+  }
+  if (filled) {
+    cv::fillConvexPoly(picture, outline, colour, cv::LINE_AA, 4);
+  } else {
+    cv::polylines(picture, outline, true, colour, 1, cv::LINE_AA, 4);
+  }
+}
+
+/// Full colour at the largest height, that of a level tag at none.
+cv::Scalar colour_of(double height_m, double largest_m) {
+  const double share = largest_m > 0 ? std::min(1.0, std::abs(height_m) / largest_m) : 0;
+  return (1 - share) * kLevel + share * (height_m > 0 ? kHigher : kLower);
+}
+
+/// A round factor that makes the largest shift about half a tag long.
+double magnification(double largest_m, double tag_m) {
+  if (!(largest_m > 0)) return 1;
+  const double wanted = 0.6 * tag_m / largest_m;
+  const double power = std::pow(10, std::floor(std::log10(std::max(wanted, 1.0))));
+  for (const double step : {5.0, 2.0}) {
+    if (wanted >= step * power) return step * power;
+  }
+  return power;
+}
+
+}  // namespace
+
+std::vector<TagChange> compare_boards(const Board& before, const Board& after) {
+  std::vector<TagChange> changes;
+  for (const auto& [id, tag] : before.tags) {
+    const auto other = after.tags.find(id);
+    if (other == after.tags.end()) continue;
+    const Eigen::Isometry3d& a = tag.stage_from_tag;
+    const Eigen::Isometry3d& b = other->second.stage_from_tag;
+    const double cosine = a.linear().col(2).dot(b.linear().col(2));
+    changes.push_back(
+        {id, b.translation() - a.translation(), std::acos(std::clamp(cosine, -1.0, 1.0))});
+  }
+  return changes;
+}
+
+cv::Mat draw_board_change(const Board& before, const Board& after) {
+  // Fit the board into the picture.
+  Eigen::AlignedBox2d box;
+  double tag_m = 0;
+  for (const auto& [id, tag] : before.tags) {
+    for (const Eigen::Vector3d& corner : tag.corners_in_stage()) box.extend(corner.head<2>());
+    tag_m = std::max(tag_m, tag.size_m);
+  }
+  const double scale = kSidePx / std::max(box.sizes().maxCoeff(), 1e-6);
+  const Eigen::Vector2d size_px = box.sizes() * scale + Eigen::Vector2d::Constant(2 * kMarginPx);
+  const Map map{box.min(), scale, size_px.y()};
+  cv::Mat picture(static_cast<int>(size_px.y()) + kLegendPx,
+                  std::max(static_cast<int>(size_px.x()), 420), CV_8UC3, kPaper);
+
+  // Draw tags, then arrows over them.
+  const std::vector<TagChange> changes = compare_boards(before, after);
+  double largest_m = 0;
+  double highest_m = 0;
+  for (const TagChange& change : changes) {
+    largest_m = std::max(largest_m, change.shift_m.head<2>().norm());
+    highest_m = std::max(highest_m, std::abs(change.shift_m.z()));
+  }
+  const double factor = magnification(largest_m, tag_m);
+  for (const TagChange& change : changes) {
+    draw_tag(picture, map, before.tags.at(change.id), kBefore, true);
+    draw_tag(picture, map, after.tags.at(change.id), colour_of(change.shift_m.z(), highest_m),
+             false);
+  }
+  for (const TagChange& change : changes) {
+    const Eigen::Vector3d from = before.tags.at(change.id).stage_from_tag.translation();
+    const cv::Scalar colour = colour_of(change.shift_m.z(), highest_m);
+    cv::arrowedLine(picture, map.at(from), map.at(from + factor * change.shift_m), colour, 2,
+                    cv::LINE_AA, 0, 0.2);
+    cv::putText(picture, fmt::format("{} {:+.2f}", change.id, 1e3 * change.shift_m.z()),
+                map.at(before.tags.at(change.id).corners_in_stage()[0]) + cv::Point2d(3, -4),
+                cv::FONT_HERSHEY_SIMPLEX, 0.38, kInk, 1, cv::LINE_AA);
+  }
+  cv::putText(picture,
+              fmt::format("arrows {:g} x: largest {:.2f} mm; numbers: tag, height in mm", factor,
+                          1e3 * largest_m),
+              {kMarginPx, picture.rows - 34}, cv::FONT_HERSHEY_SIMPLEX, 0.45, kInk, 1, cv::LINE_AA);
+  cv::putText(picture, "red: higher, green: lower", {kMarginPx, picture.rows - 14},
+              cv::FONT_HERSHEY_SIMPLEX, 0.45, kInk, 1, cv::LINE_AA);
+  return picture;
+}
+
+}  // namespace sheen::capture

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+// Calibration: known lenses found again, and views refused that cannot tell.
+#include "capture/calibration/calibrate_camera.h"
+#include "capture/calibration/calibration_pictures.h"
+#include "capture/calibration/coverage_picture.h"
+#include "tests/capture/expect_bad_input.h"
+#include "tests/capture/rendered_board.h"
+#include "tests/capture/scratch_folder.h"
+
+#include <gtest/gtest.h>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <set>
+
+namespace sheen::capture::test {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr PictureSize kSize{1280, 720};
+
+/// The corners of a grid of tags as a camera sees them, those outside the picture left out.
+TargetView view_of(const Board& board, const core::CameraModel& camera,
+                   const Eigen::Isometry3d& camera_from_stage, int index) {
+  TargetView view;
+  view.frame_index = index;
+  for (const auto& [id, corners] : true_corners(board, camera, camera_from_stage)) {
+    const auto on_board = board.tags.at(id).corners_in_stage();
+    for (std::size_t c = 0; c < 4; ++c) {
+      const Eigen::Vector2d& p = corners[c];
+      if (p.x() < 0 || p.y() < 0 || p.x() > kSize.width_px - 1 || p.y() > kSize.height_px - 1) {
+        continue;
+      }
+      view.on_target.push_back(on_board[c]);
+      view.in_picture.push_back(p);
+    }
+  }
+  return view;
+}
+
+/// Views from all sides, near enough to fill the picture.
+std::vector<TargetView> good_views(const core::CameraModel& camera, int count, double noise_px,
+                                   unsigned seed) {
+  const Board board = make_grid_board("tag36h11", 8, 6, 0.03, 0.0375);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0, noise_px);
+  std::vector<TargetView> views;
+  for (int i = 0; i < count; ++i) {
+    const auto pose = look_at_stage(0.22 + 0.04 * (i % 4), (50 + 13 * (i % 3)) * kDegree,
+                                    2 * std::numbers::pi * i * 0.381966);
+    views.push_back(view_of(board, camera, pose, i));
+    for (Eigen::Vector2d& p : views.back().in_picture) {
+      p += Eigen::Vector2d(noise(random), noise(random));
+    }
+  }
+  return views;
+}
+
+TEST(Calibration, FindsTheLensOfExactPoints) {
+  // OpenCV takes points as floats: 720 px carry an error of 3e-5 px.
+  const auto truth = make_camera(kSize.width_px, kSize.height_px, true);
+  const auto found = calibrate_camera(good_views(truth, 14, 0, 1), kSize);
+  ASSERT_TRUE(found);
+  EXPECT_LT(found->rms_px, 1e-3);
+  const auto& a = found->camera.intrinsics();
+  const auto& b = truth.intrinsics();
+  EXPECT_LT((a.focal_px - b.focal_px).norm(), 0.02);
+  EXPECT_LT((a.principal_px - b.principal_px).norm(), 0.02);
+  EXPECT_NEAR(a.distortion[0], b.distortion[0], 1e-4);
+  EXPECT_TRUE(find_faults(*found, {}).empty());
+}
+
+TEST(Calibration, StaysWithinWhatItSaysOfItsErrors) {
+  // Gaussian noise of 0.2 px: every parameter within four standard deviations of the truth, and
+  // the residual that noise leaves: 0.2 px per coordinate, sqrt(2) times that per point.
+  const auto truth = make_camera(kSize.width_px, kSize.height_px, true);
+  for (const unsigned seed : {2U, 3U, 4U}) {
+    SCOPED_TRACE(seed);
+    const auto found = calibrate_camera(good_views(truth, 14, 0.2, seed), kSize);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->rms_px, 0.2 * std::numbers::sqrt2, 0.02);
+    const auto& a = found->camera.intrinsics();
+    const auto& b = truth.intrinsics();
+    for (int i = 0; i < 2; ++i) {
+      EXPECT_LT(std::abs(a.focal_px[i] - b.focal_px[i]), 4 * found->focal_sigma_px[i]);
+      EXPECT_LT(std::abs(a.principal_px[i] - b.principal_px[i]), 4 * found->principal_sigma_px[i]);
+    }
+    EXPECT_LT(found->focal_sigma_px.maxCoeff(), 2);
+    EXPECT_TRUE(find_faults(*found, {}).empty());
+  }
+}
+
+TEST(Calibration, LeavesOutTheThirdRadialTermWhereThereIsNone) {
+  core::CameraModel::Intrinsics intrinsics = make_camera(1280, 720, false).intrinsics();
+  intrinsics.distortion = {-0.1, 0.03, 0, 0, 0, 0, 0, 0};
+  const auto found = calibrate_camera(good_views(core::CameraModel(intrinsics), 14, 0.2, 5), kSize);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->camera.intrinsics().distortion[4], 0);
+}
+
+TEST(Calibration, LeavesOutAViewThatIsFarWorse) {
+  const auto truth = make_camera(kSize.width_px, kSize.height_px, true);
+  auto views = good_views(truth, 14, 0.1, 6);
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0, 5);
+  for (Eigen::Vector2d& p : views[4].in_picture) p += Eigen::Vector2d(noise(random), noise(random));
+  const auto found = calibrate_camera(views, kSize);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->dropped, std::vector<int>{4});
+  EXPECT_LT((found->camera.intrinsics().focal_px - truth.intrinsics().focal_px).norm(), 2);
+}
+
+/// Whether one of the faults contains a word.
+bool has_fault(const std::vector<std::string>& faults, const std::string& word) {
+  return std::any_of(faults.begin(), faults.end(), [&](const std::string& fault) {
+    return fault.find(word) != std::string::npos;
+  });
+}
+
+TEST(Calibration, RefusesTooFewViews) {
+  const auto truth = make_camera(kSize.width_px, kSize.height_px, true);
+  EXPECT_FALSE(calibrate_camera({}, kSize));
+  EXPECT_FALSE(calibrate_camera(good_views(truth, 2, 0.1, 8), kSize));
+  const auto found = calibrate_camera(good_views(truth, 5, 0.1, 8), kSize);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(has_fault(find_faults(*found, {}), "only 5 pictures"));
+}
+
+TEST(Calibration, RefusesViewsThatAreAllAlike) {
+  // Straight from above at one height: focal length and distance cannot be told apart.
+  const auto truth = make_camera(kSize.width_px, kSize.height_px, true);
+  const Board board = make_grid_board("tag36h11", 8, 6, 0.03, 0.0375);
+  std::mt19937 random(9);
+  std::normal_distribution<double> noise(0, 0.2);
+  std::vector<TargetView> views;
+  for (int i = 0; i < 12; ++i) {
+    views.push_back(view_of(board, truth, look_at_stage(0.3, 88 * kDegree, 0.02 * i), i));
+    for (Eigen::Vector2d& p : views.back().in_picture) {
+      p += Eigen::Vector2d(noise(random), noise(random));
+    }
+  }
+  const auto found = calibrate_camera(views, kSize);
+  if (found) EXPECT_TRUE(has_fault(find_faults(*found, {}), "too alike"));
+}
+
+TEST(Calibration, RefusesViewsThatLeaveThePictureEmpty) {
+  const auto truth = make_camera(kSize.width_px, kSize.height_px, true);
+  const Board board = make_grid_board("tag36h11", 3, 3, 0.02, 0.025);
+  std::vector<TargetView> views;
+  for (int i = 0; i < 12; ++i) {
+    views.push_back(
+        view_of(board, truth, look_at_stage(0.6, (45 + 10 * (i % 4)) * kDegree, 0.6 * i), i));
+  }
+  const auto found = calibrate_camera(views, kSize);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(has_fault(find_faults(*found, {}), "of the picture"));
+}
+
+TEST(Calibration, RefusesAnotherTargetThanTheOneGiven) {
+  // The rows of the print are shifted against each other by up to 4 mm.
+  const auto truth = make_camera(kSize.width_px, kSize.height_px, true);
+  auto views = good_views(truth, 14, 0.1, 10);
+  for (TargetView& view : views) {
+    for (Eigen::Vector3d& p : view.on_target) p.x() += 0.004 * std::sin(170 * p.y());
+  }
+  const auto found = calibrate_camera(views, kSize);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(has_fault(find_faults(*found, {}), "not flat or not the one"));
+}
+
+TEST(SpreadViews, KeepsTheFewThatDiffer) {
+  // A camera that stood still for 60 frames and moved in 6: all 6 must be among 12.
+  const auto camera = make_camera(kSize.width_px, kSize.height_px, true);
+  const Board board = make_grid_board("tag36h11", 6, 5, 0.03, 0.0375);
+  std::vector<TargetView> views;
+  for (int i = 0; i < 60; ++i) {
+    views.push_back(
+        view_of(board, camera, look_at_stage(0.4 + 1e-4 * i, 70 * kDegree, 1e-3 * i), i));
+  }
+  for (int i = 60; i < 66; ++i) {
+    views.push_back(view_of(board, camera, look_at_stage(0.4, 45 * kDegree, i), i));
+  }
+  std::set<int> chosen;
+  for (const TargetView& view : choose_spread_views(views, kSize, 12)) {
+    chosen.insert(view.frame_index);
+  }
+  EXPECT_EQ(chosen.size(), 12U);
+  for (int i = 60; i < 66; ++i) EXPECT_TRUE(chosen.contains(i)) << i;
+}
+
+TEST(TargetFinder, MeasuresAChessboardAndABoardAlike) {
+  // A chessboard drawn by warping a large one: its corners are known through the homography.
+  constexpr int square_px = 60;
+  cv::Mat print(7 * square_px + 120, 10 * square_px + 120, CV_8UC1, cv::Scalar(230));
+  for (int row = 0; row < 7; ++row) {
+    for (int column = 0; column < 10; ++column) {
+      if ((row + column) % 2 == 0) continue;
+      print(cv::Rect(60 + column * square_px, 60 + row * square_px, square_px, square_px)) = 30;
+    }
+  }
+  const cv::Matx33d H(0.62, 0.11, 60, -0.08, 0.66, 90, 1e-4, 6e-5, 1);
+  cv::Mat picture;
+  cv::GaussianBlur(print, print, {}, 1.2);  // no aliasing after the shrinking
+  cv::warpPerspective(print, picture, H, {640, 480}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, 230);
+  const auto finder = make_target_finder(Chessboard{9, 6, 0.025});
+  const auto view = finder->find(picture);
+  ASSERT_TRUE(view);
+  ASSERT_EQ(view->in_picture.size(), 54U);
+  // The order may begin at either end of the board; every corner is near its own place.
+  for (const Eigen::Vector2d& seen : view->in_picture) {
+    double nearest = 1e9;
+    for (int row = 1; row <= 6; ++row) {
+      for (int column = 1; column <= 9; ++column) {
+        // A corner lies between two pixels of the print.
+        const cv::Vec3d p =
+            H * cv::Vec3d(60 + column * square_px - 0.5, 60 + row * square_px - 0.5, 1);
+        nearest = std::min(nearest, (seen - Eigen::Vector2d(p[0] / p[2], p[1] / p[2])).norm());
+      }
+    }
+    EXPECT_LT(nearest, 0.15);
+  }
+  EXPECT_FALSE(make_target_finder(Chessboard{8, 5, 0.025})
+                   ->find(cv::Mat(480, 640, CV_8UC1, cv::Scalar(128))));
+  EXPECT_THROW(make_target_finder(Chessboard{2, 6, 0.025}), std::invalid_argument);
+}
+
+TEST(CalibrationPictures, TakesAFolderByNameAndRefusesMixedSizes) {
+  const ScratchFolder folder;
+  const auto write = [&](const char* name, int width) {
+    cv::imwrite((folder.path() / name).string(), cv::Mat(120, width, CV_8UC3, cv::Scalar(9, 9, 9)));
+  };
+  expect_bad_input([&] { open_calibration_pictures(folder.path()); }, "holds no pictures");
+  expect_bad_input([&] { open_calibration_pictures(folder.path() / "none"); }, "no such video");
+  write("b.png", 160);
+  write("a.JPG", 160);
+  folder.write("notes.txt", "not a picture");
+  const auto two = open_calibration_pictures(folder.path());
+  EXPECT_EQ(two->frame_count(), 2);
+  EXPECT_EQ(two->next()->index, 0);
+  EXPECT_EQ(two->next()->index, 1);
+  EXPECT_FALSE(two->next());
+  write("c.png", 170);
+  const auto mixed = open_calibration_pictures(folder.path());
+  mixed->next();
+  mixed->next();
+  expect_bad_input([&] { mixed->next(); }, "c.png");
+  const auto broken = folder.write("0.png", "no picture at all");
+  expect_bad_input([&] { open_calibration_pictures(folder.path())->next(); }, "0.png");
+  const auto video = folder.write("walk.mp4", "no video");
+  expect_bad_input([&] { open_calibration_pictures(video); }, "walk.mp4");
+}
+
+TEST(CoveragePicture, ShadesOnlyCellsWithoutPoints) {
+  const auto truth = make_camera(kSize.width_px, kSize.height_px, true);
+  const auto found = calibrate_camera(good_views(truth, 14, 0.1, 12), kSize);
+  ASSERT_TRUE(found);
+  const cv::Mat picture = draw_coverage(*found);
+  cv::Mat shaded;
+  cv::inRange(picture, cv::Scalar(205, 222, 246), cv::Scalar(205, 222, 246), shaded);
+  // The frame's area less the cells with points, thin lines and points aside.
+  const double frame_area = 960.0 * 540;
+  EXPECT_NEAR(cv::countNonZero(shaded) / frame_area, 1 - found->coverage, 0.03);
+}
+
+}  // namespace
+}  // namespace sheen::capture::test
