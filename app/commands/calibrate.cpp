@@ -5,7 +5,9 @@
 #include "capture/calibration/calibrate_camera.h"
 #include "capture/calibration/calibration_pictures.h"
 #include "capture/calibration/camera_file.h"
+#include "capture/calibration/camera_pictures.h"
 #include "capture/calibration/coverage_picture.h"
+#include "capture/source/v4l2_camera.h"
 #include "core/diagnostics/error.h"
 #include "core/files/staged_output.h"
 #include "core/image/write_image.h"
@@ -29,6 +31,7 @@ struct CalibrateOptions {
   std::string chessboard;
   double square_mm = 25;
   int views = 40;
+  double seconds = 40;
 };
 
 /// Views of the target with their pictures, which are needed once more when the lens is known.
@@ -70,9 +73,21 @@ capture::CalibrationTarget target_of(const CalibrateOptions& options) {
   return chessboard;
 }
 
+/// A device is watched for a while; anything else is read to its end.
+std::unique_ptr<capture::FrameSource> open_pictures(const CalibrateOptions& options) {
+  if (!options.source.string().starts_with("/dev/")) {
+    return capture::open_calibration_pictures(options.source);
+  }
+  capture::V4l2CameraOptions camera;
+  camera.device = options.source;
+  return capture::open_camera_pictures(
+      std::make_unique<capture::V4l2Camera>(capture::kernel_v4l2_system(), camera),
+      options.seconds);
+}
+
 Candidates find_candidates(const CalibrateOptions& options, capture::TargetFinder& finder,
                            const CommandContext& context) {
-  const auto frames = capture::open_calibration_pictures(options.source);
+  const auto frames = open_pictures(options);
   Progress progress = context.progress("looking for the target", frames->frame_count().value_or(0));
   Candidates candidates;
   int stride = 1;
@@ -194,12 +209,16 @@ void add_calibrate_command(CLI::App& program, CommandContext& context) {
       "Examples:\n"
       "  sheen board -o grid.pdf --full --tag-mm 25\n"
       "  sheen calibrate walk.mp4 --board grid.yaml -o camera.yaml --picture coverage.png\n"
+      "  sheen calibrate /dev/video0 --board grid.yaml -o camera.yaml    for 40 s, from the "
+      "camera\n"
       "  sheen calibrate photos/ --chessboard 9x6 --square-mm 25 -o camera.yaml\n"
       "Lock focus and zoom first. Move the target through the whole picture, its corners too,\n"
       "near and far, tilted to all sides by 30 degrees and more.");
   command
-      ->add_option("source", options->source,
-                   "Video, folder of pictures, or session folder (its recording is taken)")
+      ->add_option(
+          "source", options->source,
+          "Video, folder of pictures, session folder (its recording is taken), or a camera's "
+          "device such as /dev/video0")
       ->required();
   command->add_option("-o,--output", options->output, "Camera file to write")
       ->required()
@@ -223,6 +242,10 @@ void add_calibrate_command(CLI::App& program, CommandContext& context) {
   command->add_option("--views", options->views, "Pictures to calibrate from, chosen for spread")
       ->check(CLI::Range(3, 100).description(""))
       ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--seconds", options->seconds, "How long a camera's device is watched")
+      ->check(CLI::Range(5.0, 3600.0).description(""))
+      ->type_name("S")
       ->capture_default_str();
   command
       ->add_option("--picture", options->picture,

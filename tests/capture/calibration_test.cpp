@@ -2,6 +2,7 @@
 // Calibration: known lenses found again, and views refused that cannot tell.
 #include "capture/calibration/calibrate_camera.h"
 #include "capture/calibration/calibration_pictures.h"
+#include "capture/calibration/camera_pictures.h"
 #include "capture/calibration/coverage_picture.h"
 #include "tests/capture/expect_bad_input.h"
 #include "tests/capture/rendered_board.h"
@@ -12,7 +13,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <numbers>
 #include <random>
 #include <set>
@@ -144,7 +148,7 @@ TEST(Calibration, RefusesViewsThatAreAllAlike) {
     }
   }
   const auto found = calibrate_camera(views, kSize);
-  if (found) EXPECT_TRUE(has_fault(find_faults(*found, {}), "too alike"));
+  EXPECT_TRUE(!found || has_fault(find_faults(*found, {}), "too alike"));
 }
 
 TEST(Calibration, RefusesViewsThatLeaveThePictureEmpty) {
@@ -252,6 +256,62 @@ TEST(CalibrationPictures, TakesAFolderByNameAndRefusesMixedSizes) {
   expect_bad_input([&] { open_calibration_pictures(folder.path())->next(); }, "0.png");
   const auto video = folder.write("walk.mp4", "no video");
   expect_bad_input([&] { open_calibration_pictures(video); }, "walk.mp4");
+}
+
+/// A camera that delivers one grey picture 30 times a second, for ever or up to a number.
+class SteadyCamera : public Camera {
+ public:
+  SteadyCamera(PixelFormat format, int pictures) : format_(format), left_(pictures) {
+    const std::size_t size = format == PixelFormat::nv12 ? 64 * 48 * 3 / 2 : 64 * 48 * 2;
+    bytes_.assign(size, 128);
+  }
+
+  std::optional<CameraBuffer> next(std::chrono::milliseconds) override {
+    if (left_-- <= 0) return std::nullopt;
+    CameraBuffer buffer;
+    buffer.format = format_;
+    buffer.bytes = bytes_;
+    buffer.width_px = 64;
+    buffer.height_px = 48;
+    buffer.time_s = 100 + sequence_ / 30.0;
+    buffer.sequence = sequence_++;
+    return buffer;
+  }
+  [[nodiscard]] CameraDescription description() const override {
+    return {"steady", "/dev/steady", format_, 64, 48, 30};
+  }
+  [[nodiscard]] CameraCounts counts() const override { return {}; }
+
+ private:
+  PixelFormat format_;
+  int left_;
+  std::uint32_t sequence_ = 0;
+  std::vector<std::uint8_t> bytes_;
+};
+
+TEST(CameraPictures, TakesThreeASecondUntilTheTimeIsOver) {
+  for (const PixelFormat format : {PixelFormat::yuyv, PixelFormat::nv12}) {
+    const auto pictures = open_camera_pictures(std::make_unique<SteadyCamera>(format, 1000), 4);
+    int count = 0;
+    while (const auto frame = pictures->next()) {
+      EXPECT_EQ(frame->image.size(), cv::Size(64, 48));
+      EXPECT_EQ(frame->index, count);
+      EXPECT_NEAR(frame->time_s, count / 3.0, 0.02);
+      ++count;
+    }
+    EXPECT_EQ(count, 13);  // 0, 1/3, ..., 4 s
+  }
+}
+
+TEST(CameraPictures, EndsClearlyWhenTheCameraFallsSilent) {
+  const auto pictures =
+      open_camera_pictures(std::make_unique<SteadyCamera>(PixelFormat::yuyv, 1), 4);
+  EXPECT_TRUE(pictures->next());
+  EXPECT_THROW(pictures->next(), core::Error);
+  // Bytes that are no picture are passed over, as a damaged one is.
+  EXPECT_THROW(
+      open_camera_pictures(std::make_unique<SteadyCamera>(PixelFormat::mjpeg, 5), 4)->next(),
+      core::Error);
 }
 
 TEST(CoveragePicture, ShadesOnlyCellsWithoutPoints) {
