@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <future>
 #include <optional>
 #include <string>
 #include <thread>
@@ -76,13 +77,14 @@ TEST_F(DeviceCapture, ACaptureGoesOnInTheSameSessionWhenTheCameraIsBack) {
   const std::string session = folder.path() / "session";
   // Two seconds of pictures after the settling, then none for longer than a camera may be silent.
   std::optional<LoopbackPlayer> player(std::in_place, loopback_node, recording);
-  const std::jthread cable([&] {
+  auto cable = std::async(std::launch::async, [&] {
     std::this_thread::sleep_for(4s);
     player.reset();
     std::this_thread::sleep_for(8s);
     player.emplace(loopback_node, recording);
   });
   const auto run = capture(session, 90);
+  cable.get();
   ASSERT_EQ(run.exit_code, 0) << run.standard_error;
   const auto told = run.json()["recording"];
   EXPECT_EQ(told["recorded"], 90);

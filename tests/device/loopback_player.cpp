@@ -19,6 +19,10 @@ namespace sheen::capture::test {
 namespace {
 
 void set_output(int descriptor, const std::string& node, const Recording& recording) {
+  // The driver finds out whether it is a camera or a screen when it is asked.
+  v4l2_capability capability{};
+  if (::ioctl(descriptor, VIDIOC_QUERYCAP, &capability) == -1)
+    throw device_fault(node, "asking what it can do", errno);
   v4l2_format format{};
   format.type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
   v4l2_pix_format& pix = format.fmt.pix;
@@ -36,6 +40,10 @@ void set_output(int descriptor, const std::string& node, const Recording& record
   rate.parm.output.timeperframe = {1, static_cast<__u32>(std::lround(recording.fps))};
   if (::ioctl(descriptor, VIDIOC_S_PARM, &rate) == -1)
     throw device_fault(node, "setting the rate to be played", errno);
+  // Writing needs no stream, but without one the driver forgets to be free again afterwards.
+  int type = V4L2_BUF_TYPE_VIDEO_OUTPUT;
+  if (::ioctl(descriptor, VIDIOC_STREAMON, &type) == -1)
+    throw device_fault(node, "starting to play", errno);
 }
 
 }  // namespace
