@@ -34,7 +34,8 @@ std::optional<capture::BoardRefinement> refine_session_board(
     throw_if_interrupted();
     on_frame(i + 1);
     if (i % stride != 0) continue;
-    views.push_back(finder.find(frame->image));
+    finder.look_at(*frame);
+    views.push_back(finder.find());
     if (views.size() < kMostViews) continue;
     thin_out(views);
     stride *= 2;

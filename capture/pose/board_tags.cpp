@@ -21,8 +21,17 @@ TagFamily family_of(const Board& board) {
 BoardTagFinder::BoardTagFinder(const Board& board, const core::CameraModel& camera)
     : board_(board), camera_(camera), family_(family_of(board)), detector_(family_) {}
 
-std::vector<TagDetection> BoardTagFinder::find(const cv::Mat& image) {
-  cv::cvtColor(image, grey_, cv::COLOR_BGR2GRAY);
+const cv::Mat& BoardTagFinder::look_at(const Frame& frame) {
+  if (frame.grey.empty()) {
+    cv::cvtColor(frame.image, buffer_, cv::COLOR_BGR2GRAY);
+    grey_ = buffer_;
+  } else {
+    grey_ = frame.grey;
+  }
+  return grey_;
+}
+
+std::vector<TagDetection> BoardTagFinder::find() const {
   std::vector<TagDetection> tags = drop_ambiguous(detector_.detect(grey_));
   std::erase_if(tags, [&](const TagDetection& tag) { return !board_.tags.contains(tag.id); });
   for (TagDetection& tag : tags) refine_corners(grey_, camera_, family_.modules, tag.corners_px);

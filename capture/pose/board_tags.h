@@ -3,6 +3,7 @@
 
 #include "capture/pose/board.h"
 #include "capture/pose/tag_detector.h"
+#include "capture/source/frame.h"
 #include "core/geometry/camera.h"
 
 #include <opencv2/core/mat.hpp>
@@ -17,11 +18,12 @@ class BoardTagFinder {
   /// Throws std::invalid_argument for a tag family that no detector knows.
   BoardTagFinder(const Board& board, const core::CameraModel& camera);
 
-  /// Tags of the board in a CV_8UC3 BGR picture, sorted by id, no id twice.
-  [[nodiscard]] std::vector<TagDetection> find(const cv::Mat& image);
+  /// Takes the frame as the one to search and returns it as CV_8UC1, valid until the next call.
+  const cv::Mat& look_at(const Frame& frame);
 
-  /// The picture last searched, CV_8UC1.
-  [[nodiscard]] const cv::Mat& grey() const { return grey_; }
+  /// Tags of the board in the frame last looked at, sorted by id, no id twice.
+  [[nodiscard]] std::vector<TagDetection> find() const;
+
   [[nodiscard]] const TagFamily& family() const { return family_; }
 
  private:
@@ -29,6 +31,7 @@ class BoardTagFinder {
   core::CameraModel camera_;
   TagFamily family_;
   TagDetector detector_;
+  cv::Mat buffer_;  // written by us only; a frame's own plane is shared
   cv::Mat grey_;
 };
 

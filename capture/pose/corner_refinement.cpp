@@ -2,8 +2,7 @@
 #include "capture/pose/corner_refinement.h"
 
 #include "capture/pose/edge_profile.h"
-
-#include <Eigen/LU>
+#include "capture/pose/side_line.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,21 +10,6 @@
 
 namespace sheen::capture {
 namespace {
-
-constexpr int kMaxPositions = 24;
-
-/// Measured distance of an edge from where it was expected, px, along its side.
-struct EdgePositions {
-  std::array<double, kMaxPositions> t{};
-  std::array<double, kMaxPositions> offset_px{};
-  int count = 0;
-};
-
-/// Distance of the true side from the expected one: `at_begin` at t = 0, `at_end` at t = 1.
-struct SideOffset {
-  double at_begin = 0;
-  double at_end = 0;
-};
 
 EdgePositions measure(const cv::Mat& grey, const TagSide& side, double half_length_px, int wanted) {
   // Stay clear of the corners, where two edges melt into each other.
@@ -37,37 +21,9 @@ EdgePositions measure(const cv::Mat& grey, const TagSide& side, double half_leng
     const auto profile = EdgeProfile::sample(grey, side.point(t), side.outward(), half_length_px);
     const auto position = profile ? profile->position_px() : std::nullopt;
     if (!position || std::abs(*position) > 0.8 * half_length_px) continue;
-    const auto slot = static_cast<std::size_t>(found.count++);
-    found.t[slot] = t;
-    found.offset_px[slot] = *position;
+    found.add(t, *position);
   }
   return found;
-}
-
-/// Straight line through the positions, reweighted with Cauchy weights against covered stretches.
-std::optional<SideOffset> fit_line(const EdgePositions& positions) {
-  constexpr int rounds = 6;
-  constexpr double scale_px = 0.15;   // positions of a clean edge scatter by less
-  constexpr double min_weight = 0.4;  // share of positions that must agree
-  Eigen::Vector2d line = Eigen::Vector2d::Zero();
-  double weight_sum = 0;
-  for (int round = 0; round < rounds; ++round) {
-    Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
-    Eigen::Vector2d g = Eigen::Vector2d::Zero();
-    weight_sum = 0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(positions.count); ++i) {
-      const Eigen::Vector2d basis(1 - positions.t[i], positions.t[i]);
-      const double residual = (positions.offset_px[i] - basis.dot(line)) / scale_px;
-      const double weight = round == 0 ? 1 : 1 / (1 + residual * residual);
-      A += weight * basis * basis.transpose();
-      g += weight * positions.offset_px[i] * basis;
-      weight_sum += weight;
-    }
-    if (!(std::abs(A.determinant()) > 1e-9)) return std::nullopt;
-    line = A.inverse() * g;
-  }
-  if (weight_sum < min_weight * positions.count) return std::nullopt;
-  return SideOffset{line[0], line[1]};
 }
 
 /// Half length of the profiles across a side. The first round must catch corners that are a few
@@ -94,21 +50,11 @@ double half_length(const cv::Mat& grey, const TagSide& side, double module_px, b
 std::optional<SideOffset> locate_side(const cv::Mat& grey, const TagSide& side, double module_px,
                                       bool is_first) {
   const double half_length_px = half_length(grey, side, module_px, is_first);
-  const int wanted = std::clamp(static_cast<int>(side.length_px() / 1.5), 8, kMaxPositions);
+  const int wanted = std::clamp(static_cast<int>(side.length_px() / 1.5), 8,
+                                static_cast<int>(EdgePositions::kMost));
   const EdgePositions positions = measure(grey, side, half_length_px, wanted);
-  if (2 * positions.count < wanted) return std::nullopt;
+  if (2 * positions.count < static_cast<std::size_t>(wanted)) return std::nullopt;
   return fit_line(positions);
-}
-
-/// Where two sides meet, against the corner between them. No value for sides nearly parallel.
-std::optional<Eigen::Vector2d> intersect(const Eigen::Vector2d& outward_before,
-                                         double offset_before, const Eigen::Vector2d& outward_after,
-                                         double offset_after) {
-  constexpr double min_sine = 0.1;
-  Eigen::Matrix2d A;
-  A << outward_before.transpose(), outward_after.transpose();
-  if (std::abs(A.determinant()) < min_sine) return std::nullopt;
-  return Eigen::Vector2d(A.inverse() * Eigen::Vector2d(offset_before, offset_after));
 }
 
 }  // namespace
@@ -138,7 +84,7 @@ void refine_corners(const cv::Mat& grey, const core::CameraModel& camera, int mo
       const std::size_t before = (c + 3) % 4;
       if (!offsets[before] || !offsets[c]) continue;
       const auto move =
-          intersect(outward[before], offsets[before]->at_end, outward[c], offsets[c]->at_begin);
+          meeting_point(outward[before], offsets[before]->at_end, outward[c], offsets[c]->at_begin);
       if (move && move->norm() <= max_move_px) corners_px[c] += *move;
     }
   }

@@ -9,18 +9,6 @@
 namespace sheen::capture {
 namespace {
 
-/// Bilinear read-out; the caller has checked that the point lies inside.
-double brightness(const cv::Mat& grey, const Eigen::Vector2d& px) {
-  const int x = std::min(static_cast<int>(px.x()), grey.cols - 2);
-  const int y = std::min(static_cast<int>(px.y()), grey.rows - 2);
-  const double fx = px.x() - x;
-  const double fy = px.y() - y;
-  const auto* upper = grey.ptr<unsigned char>(y) + x;
-  const auto* lower = grey.ptr<unsigned char>(y + 1) + x;
-  return (1 - fy) * ((1 - fx) * upper[0] + fx * upper[1]) +
-         fy * ((1 - fx) * lower[0] + fx * lower[1]);
-}
-
 bool is_inside(const cv::Mat& grey, const Eigen::Vector2d& px) {
   return px.x() >= 0 && px.y() >= 0 && px.x() <= grey.cols - 1 && px.y() <= grey.rows - 1;
 }
@@ -56,35 +44,71 @@ std::optional<EdgeProfile> EdgeProfile::sample(const cv::Mat& grey,
       !is_inside(grey, centre_px + reach)) {
     return std::nullopt;
   }
+  // Bilinear read-out; both ends lie inside, hence every point does.
   EdgeProfile profile;
   profile.half_length_px_ = half_length_px;
+  const Eigen::Vector2f begin = (centre_px - reach).cast<float>();
+  const Eigen::Vector2f step = (reach * (2.0 / kSteps)).cast<float>();
+  const std::size_t stride = grey.step;
+  const unsigned char* const pixels = grey.data;
   for (int i = 0; i <= kSteps; ++i) {
-    const double along = 2.0 * i / kSteps - 1;
-    profile.values_[static_cast<std::size_t>(i)] = brightness(grey, centre_px + along * reach);
+    const float px = std::max(begin.x() + static_cast<float>(i) * step.x(), 0.0F);
+    const float py = std::max(begin.y() + static_cast<float>(i) * step.y(), 0.0F);
+    const int x = std::min(static_cast<int>(px), grey.cols - 2);
+    const int y = std::min(static_cast<int>(py), grey.rows - 2);
+    const float fx = px - static_cast<float>(x);
+    const float fy = py - static_cast<float>(y);
+    const unsigned char* upper =
+        pixels + static_cast<std::size_t>(y) * stride + static_cast<std::size_t>(x);
+    const unsigned char* lower = upper + stride;
+    const float above = static_cast<float>(upper[0]) + fx * static_cast<float>(upper[1] - upper[0]);
+    const float below = static_cast<float>(lower[0]) + fx * static_cast<float>(lower[1] - lower[0]);
+    profile.values_[static_cast<std::size_t>(i)] = above + fy * (below - above);
   }
   return profile;
 }
 
-bool EdgeProfile::has_contrast() const {
-  constexpr double min_contrast = 16;  // of 255: below it noise decides where the edge lies
-  return std::abs(outside_level() - inside_level()) >= min_contrast;
+int EdgeProfile::polarity() const {
+  constexpr float min_contrast = 16;  // of 255: below it noise decides where the edge lies
+  const float step = outside_level() - inside_level();
+  return step >= min_contrast ? 1 : step <= -min_contrast ? -1 : 0;
+}
+
+std::optional<double> EdgeProfile::strongest_step_px(int sign) const {
+  constexpr float min_step = 16;     // of 255
+  constexpr double window_px = 1.5;  // on either side: wider than the noise, narrower than a module
+  const int window =
+      std::clamp(static_cast<int>(std::lround(window_px * kSteps / (2 * half_length_px_))), 1, 8);
+  float strongest = min_step * static_cast<float>(window);
+  int found = -1;
+  for (int i = window; i <= kSteps - window; ++i) {
+    float step = 0;
+    for (int k = 1; k <= window; ++k) {
+      step += values_[static_cast<std::size_t>(i + k)] - values_[static_cast<std::size_t>(i - k)];
+    }
+    if (step * static_cast<float>(sign) <= strongest) continue;
+    strongest = step * static_cast<float>(sign);
+    found = i;
+  }
+  if (found < 0) return std::nullopt;
+  return (2.0 * found / kSteps - 1) * half_length_px_;
 }
 
 std::optional<double> EdgeProfile::position_px() const {
-  if (!has_contrast()) return std::nullopt;
+  if (polarity() == 0) return std::nullopt;
   // A step from 0 to 1 at x has the integral half_length - x over the line (trapezoid rule).
-  const double inside = inside_level();
-  const double contrast = outside_level() - inside;
-  double sum = std::accumulate(values_.begin(), values_.end(), 0.0);
+  const float inside = inside_level();
+  const float contrast = outside_level() - inside;
+  float sum = std::accumulate(values_.begin(), values_.end(), 0.0F);
   sum -= (values_.front() + values_.back()) / 2;
-  const double integral = (sum / kSteps - inside) / contrast * 2 * half_length_px_;
-  return half_length_px_ - integral;
+  const double bright_share = static_cast<double>((sum / kSteps - inside) / contrast);
+  return half_length_px_ * (1 - 2 * bright_share);
 }
 
 double EdgeProfile::crossing(double level, int from, int step) const {
   const double sign = outside_level() > inside_level() ? 1 : -1;
   const auto excess = [&](int i) {
-    return sign * step * (values_[static_cast<std::size_t>(i)] - level);
+    return sign * step * (static_cast<double>(values_[static_cast<std::size_t>(i)]) - level);
   };
   for (int i = from; i >= 0 && i <= kSteps; i += step) {
     if (excess(i) < 0) continue;
@@ -96,9 +120,9 @@ double EdgeProfile::crossing(double level, int from, int step) const {
 }
 
 std::optional<double> EdgeProfile::rise_width_px() const {
-  if (!has_contrast()) return std::nullopt;
-  const double inside = inside_level();
-  const double contrast = outside_level() - inside;
+  if (polarity() == 0) return std::nullopt;
+  const auto inside = static_cast<double>(inside_level());
+  const double contrast = static_cast<double>(outside_level()) - inside;
 
   // Start where half of the step is reached and walk to both sides.
   const double position = position_px().value_or(0);

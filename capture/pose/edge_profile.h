@@ -44,6 +44,13 @@ class EdgeProfile {
   /// which an ideal step has the same integral. No value without contrast.
   [[nodiscard]] std::optional<double> position_px() const;
 
+  /// Where the strongest step from dark to bright (outwards; `sign` +1) or back (-1) lies, px from
+  /// the centre, positive outwards. No value without contrast. Coarse: meant for edges far off.
+  [[nodiscard]] std::optional<double> strongest_step_px(int sign) const;
+
+  /// Bright outside: +1, dark outside: -1, no contrast: 0.
+  [[nodiscard]] int polarity() const;
+
   /// Distance between 10 % and 90 % of the step, px; at most the length of the line. No value
   /// without contrast.
   [[nodiscard]] std::optional<double> rise_width_px() const;
@@ -51,13 +58,12 @@ class EdgeProfile {
  private:
   static constexpr int kSteps = 32;
   EdgeProfile() = default;
-  [[nodiscard]] double inside_level() const { return (values_[0] + values_[1]) / 2; }
-  [[nodiscard]] double outside_level() const { return (values_[kSteps] + values_[kSteps - 1]) / 2; }
-  [[nodiscard]] bool has_contrast() const;
+  [[nodiscard]] float inside_level() const { return (values_[0] + values_[1]) / 2; }
+  [[nodiscard]] float outside_level() const { return (values_[kSteps] + values_[kSteps - 1]) / 2; }
   [[nodiscard]] double crossing(double level, int from, int step) const;
 
   double half_length_px_ = 0;
-  std::array<double, kSteps + 1> values_{};
+  std::array<float, kSteps + 1> values_;
 };
 
 }  // namespace sheen::capture

@@ -4,6 +4,8 @@
 #include "capture/pose/blur.h"
 #include "capture/pose/board_tags.h"
 #include "capture/pose/joint_pose.h"
+#include "capture/pose/motion_prediction.h"
+#include "capture/pose/tag_tracker.h"
 
 #include <cassert>
 #include <cmath>
@@ -12,22 +14,49 @@
 namespace sheen::capture {
 namespace {
 
+/// Follows the tags from frame to frame; searches the whole picture where that fails.
 class TagPoseEstimator : public PoseEstimator {
  public:
   TagPoseEstimator(const Board& board, const core::CameraModel& camera, const PoseGate& gate)
-      : board_(board), camera_(camera), gate_(gate), finder_(board, camera) {
+      : board_(board),
+        camera_(camera),
+        gate_(gate),
+        finder_(board, camera),
+        tracker_(board, camera, finder_.family()) {
     gate_.check();
   }
 
   PoseResult estimate(const Frame& frame) override {
+    const cv::Mat& grey = finder_.look_at(frame);
+
+    // Follow the tags from where they should be by now.
+    for (const auto& predicted : {motion_.predict(frame), motion_.last()}) {
+      const auto pose = predicted ? tracker_.track(grey, *predicted) : std::nullopt;
+      if (pose && is_trusted(*pose)) return accept(frame, *pose);
+    }
+
+    // Else find them anywhere; their edges then say more than their corners.
+    const PoseResult detected = detect(grey);
+    const auto* start = std::get_if<FramePose>(&detected);
+    if (start == nullptr) return detected;
+    const auto pose = tracker_.track(grey, start->camera_from_stage);
+    if (pose && pose->tags >= start->tags && pose->reprojection_px <= gate_.max_reprojection_px) {
+      return accept(frame, *pose);
+    }
+    note(frame, *start);
+    return detected;
+  }
+
+ private:
+  PoseResult detect(const cv::Mat& grey) {
     // Find the board's tags.
-    const std::vector<TagDetection> tags = finder_.find(frame.image);
+    const std::vector<TagDetection> tags = finder_.find();
     if (tags.empty()) return PoseRejection::no_tags;
     if (static_cast<int>(tags.size()) < gate_.min_tags) return PoseRejection::too_few_tags;
 
     // Refuse smeared pictures before their corners are believed.
     const double blur_px =
-        tag_edge_width(finder_.grey(), camera_, finder_.family().modules, tags).value_or(0);
+        tag_edge_width(grey, camera_, finder_.family().modules, tags).value_or(0);
     if (blur_px > gate_.max_blur_px) return PoseRejection::blur;
 
     // Solve for the pose and refuse one that does not explain the corners.
@@ -38,11 +67,32 @@ class TagPoseEstimator : public PoseEstimator {
     return FramePose{pose->camera_from_stage, used, pose->rms_px, blur_px};
   }
 
- private:
+  /// Half of the tags lost at once may mean that the rest was mistaken for others.
+  [[nodiscard]] bool is_trusted(const TrackedPose& pose) const {
+    return pose.tags >= gate_.min_tags && 2 * pose.tags >= last_tags_ &&
+           pose.reprojection_px <= gate_.max_reprojection_px;
+  }
+
+  PoseResult accept(const Frame& frame, const TrackedPose& tracked) {
+    const FramePose pose{tracked.camera_from_stage, tracked.tags, tracked.reprojection_px,
+                         tracked.blur_px};
+    note(frame, pose);
+    if (pose.blur_px > gate_.max_blur_px) return PoseRejection::blur;
+    return pose;
+  }
+
+  void note(const Frame& frame, const FramePose& pose) {
+    motion_.note(frame, pose.camera_from_stage);
+    last_tags_ = pose.tags;
+  }
+
   Board board_;
   core::CameraModel camera_;
   PoseGate gate_;
   BoardTagFinder finder_;
+  TagTracker tracker_;
+  MotionPrediction motion_;
+  int last_tags_ = 0;
 };
 
 class RecordedPoseEstimator : public PoseEstimator {

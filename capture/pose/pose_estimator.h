@@ -45,7 +45,8 @@ class PoseEstimator {
   virtual PoseResult estimate(const Frame& frame) = 0;
 };
 
-/// Detects the board's tags and solves one robust joint pose over all their corners.
+/// Follows the board's tags by their edges; where the prediction fails it detects them in the whole
+/// picture, in the same frame. Results depend on the frames alone, not on time.
 std::unique_ptr<PoseEstimator> make_tag_pose_estimator(const Board& board,
                                                        const core::CameraModel& camera,
                                                        const PoseGate& gate);

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include <optional>
+#include <vector>
+
+namespace sheen::capture {
+
+using Twist = Eigen::Matrix<double, 6, 1>;  ///< rotation vector (rad), then translation (m)
+
+/// Where an edge of the print was found, against where the present pose puts it.
+struct EdgeObservation {
+  Twist outward_by_twist;  ///< how far the edge moves out of its tag with the stage, px
+  double offset_px = 0;    ///< found this far outwards
+};
+
+/// Small motion of the stage in the camera frame, and what is left.
+struct EdgeAlignment {
+  Twist twist = Twist::Zero();
+  double swell_px = 0;  ///< by which all edges lie outwards alike: exposure, ink, blur
+  double moved_px = 0;  ///< median of how far the twist moves the edges
+};
+
+/// Robust least squares over edges (docs/algorithm.md, (20)). `room` is scratch space. No
+/// value when the observations do not determine a pose.
+std::optional<EdgeAlignment> align_edges(const std::vector<EdgeObservation>& observations,
+                                         double finest_scale_px, std::vector<double>& room);
+
+/// exp(twist) * camera_from_stage, its rotation orthonormal.
+Eigen::Isometry3d moved(const Eigen::Isometry3d& camera_from_stage, const Twist& twist);
+
+}  // namespace sheen::capture

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/pose/board.h"
+#include "capture/pose/edge_search.h"
+#include "capture/pose/tag_family.h"
+#include "capture/pose/tag_view.h"
+#include "core/geometry/camera.h"
+
+#include <Eigen/Geometry>
+#include <opencv2/core/mat.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace sheen::capture {
+
+/// A corner of a black square: where the measured edges of its two sides meet.
+struct MeasuredCorner {
+  int tag_id = 0;
+  int corner = 0;               ///< in Board::Tag's order
+  Eigen::Vector2d px;           ///< pixel (0, 0) is the first pixel's centre
+  Eigen::Vector2d residual_px;  ///< against the pose
+};
+
+/// Pose from the edges of all tags, with what speaks for it.
+struct TrackedPose {
+  Eigen::Isometry3d camera_from_stage = Eigen::Isometry3d::Identity();
+  int tags = 0;                ///< tags whose code was read and that fit the pose
+  double reprojection_px = 0;  ///< root mean square over the corners of those tags
+  double blur_px = 0;          ///< as `tag_edge_width` measures it
+};
+
+/// Follows a board whose place is roughly known: searches the edges of its tags near their
+/// predicted places, reads their codes and aligns one pose with all edges (docs/algorithm.md,
+/// section 10). Tags that come into view are found by the same prediction. Keeps its buffers; one
+/// thread at a time.
+class TagTracker {
+ public:
+  TagTracker(const Board& board, const core::CameraModel& camera, const TagFamily& family);
+
+  /// No value when no pose near `predicted` explains the CV_8UC1 picture; edges are found up to one
+  /// and a half modules away.
+  std::optional<TrackedPose> track(const cv::Mat& grey, const Eigen::Isometry3d& predicted);
+
+  /// Corners measured by the last successful `track`; cut or covered ones are missing.
+  [[nodiscard]] const std::vector<MeasuredCorner>& corners() const { return corners_; }
+
+ private:
+  void look(const Eigen::Isometry3d& camera_from_stage);
+  void look_again(const Eigen::Isometry3d& camera_from_stage);
+  bool approach(const cv::Mat& grey, Eigen::Isometry3d& camera_from_stage);
+  bool align(const cv::Mat& grey, Eigen::Isometry3d& camera_from_stage);
+  void measure_corners(const Eigen::Isometry3d& camera_from_stage);
+  int drop_misfits();
+
+  core::CameraModel camera_;
+  std::vector<BoardTag> tags_;
+  std::vector<TagView> views_;
+  EdgeSearch search_;
+  std::vector<MeasuredCorner> corners_;
+  std::vector<double> room_;
+};
+
+}  // namespace sheen::capture
