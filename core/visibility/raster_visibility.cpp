@@ -15,7 +15,7 @@ namespace {
 
 /// How much nearer than a vertex a pixel must be to hide it, in steps of one pixel along the
 /// surface: within a pixel in either direction a plane rises by at most 1.4 steps.
-constexpr float kBiasSteps = 1.5f;
+constexpr float kBiasSteps = 2.0f;
 constexpr float kRelativeBias = 1e-5f;  // rounding of depths
 
 class RasterVisibility final : public Visibility {
