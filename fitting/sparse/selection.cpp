@@ -167,20 +167,15 @@ TermList Selection::best_terms() {
 // Judges every sample by the residual it would have had were it not in the fit: a lone outlier with
 // a bump of its own stands out, while the samples of a highlight vouch for each other. `fit_` holds
 // the fit to judge by.
-void Selection::judge_samples(std::span<const DirectedColour> samples) {
+void Selection::judge_samples() {
   constexpr float least_left = 0.05f;
   Column leverage;
   fit_.leverages(leverage);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    float squared = 0;
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      const float fitted = design_.colours(channel).row[i] - fit_.residuals(channel).row[i];
-      const float residual =
-          samples[i].rgb[static_cast<Eigen::Index>(channel)] - fitted / design_.root_weight(i);
-      squared += residual * residual;
-    }
+  for (std::size_t i = 0; i < design_.rows(); ++i) {
+    const Eigen::Vector3f residual(fit_.residuals(0).row[i], fit_.residuals(1).row[i],
+                                   fit_.residuals(2).row[i]);
     left_out_residual_[i] =
-        std::sqrt(squared / 3.0f) / std::max(least_left, 1.0f - leverage.row[i]);
+        size_of(residual / design_.root_weight(i)) / std::max(least_left, 1.0f - leverage.row[i]);
   }
 }
 
@@ -207,37 +202,35 @@ bool Selection::censor(std::span<const DirectedColour> samples) {
   return changed;
 }
 
-// Returns whether anything changed. A saturated sample is judged by what it asked for so far.
-bool Selection::discount_suspects(std::span<const DirectedColour> samples) {
-  constexpr float least_left = 0.05f;
-  std::array<float, kMaxStoredSamples> surprise;
-  Column leverage;
-  fit_.leverages(leverage);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    float squared = 0;
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      const float residual = fit_.residuals(channel).row[i] / design_.root_weight(i);
-      squared += residual * residual;
-    }
-    surprise[i] = std::sqrt(squared) / std::max(least_left, 1.0f - leverage.row[i]);
-  }
+// Weighs down what does not fit. Returns whether anything changed. A saturated sample is judged by
+// what it asked for so far.
+bool Selection::discount_suspects(std::span<const DirectedColour> samples, Judgement judgement) {
+  judge_samples();
+  std::array<float, kMaxStoredSamples> residuals = left_out_residual_;
   const bool censored = censor(samples);
-  return set_factors({surprise.data(), samples.size()}) || censored;
+  return set_factors(samples, {residuals.data(), samples.size()}, judgement) || censored;
 }
 
-// Factors replace those of an earlier pass, so that a highlight that was mistaken for an outlier
-// can come back.
-bool Selection::set_factors(std::span<float> factors) {
+// Factors replace those of an earlier pass, so that a highlight that was mistaken for outliers can
+// come back: its samples are off together, an outlier is off alone.
+bool Selection::set_factors(std::span<const DirectedColour> samples,
+                            std::span<const float> residuals, Judgement judgement) {
   constexpr float noticeable = 0.01f;
-  robust_factors(factors, tolerance_);
+  constexpr float times_around = 3.0f;
+  const float threshold = suspect_threshold(residuals, tolerance_ / std::sqrt(3.0f));
+  std::array<float, kMaxStoredSamples> change;
   bool changed = false;
-  for (std::size_t i = 0; i < factors.size(); ++i) {
-    const float before = std::exchange(factor_[i], factors[i]);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    float limit = threshold;
+    if (judgement == Judgement::by_neighbours && residuals[i] > threshold) {
+      limit = std::max(limit, times_around * residual_around(samples, residuals, i));
+    }
+    const float before = std::exchange(factor_[i], robust_factor(residuals[i], limit));
     changed |= std::abs(factor_[i] - before) > noticeable;
-    factors[i] = factor_[i] / before;
+    change[i] = factor_[i] / before;
   }
   if (changed) {
-    design_.reweigh(factors);
+    design_.reweigh({change.data(), samples.size()});
     fit_is_current_ = false;
   }
   return changed;
@@ -246,7 +239,7 @@ bool Selection::set_factors(std::span<float> factors) {
 SelectedModel Selection::outcome(std::span<const DirectedColour> samples, const TermList& terms) {
   fit(terms);
   ++fits_;
-  judge_samples(samples);
+  judge_samples();
   const float error = generalised_error(fit_) + tolerance_ * tolerance_;
   return {fit_.model(), std::sqrt(error), fits_, {left_out_residual_.data(), samples.size()}};
 }
@@ -263,7 +256,8 @@ SelectedModel Selection::choose(std::span<const DirectedColour> samples) {
   if (design_.rows() < kFewestSamples) return outcome(samples, terms);
   for (int pass = 0; pass < passes; ++pass) {
     fit(terms);
-    if (!discount_suspects(samples)) break;
+    const Judgement judgement = pass == 0 ? Judgement::by_patch : Judgement::by_neighbours;
+    if (!discount_suspects(samples, judgement)) break;
     terms = best_terms();
   }
   return outcome(samples, terms);

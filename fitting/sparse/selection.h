@@ -73,10 +73,14 @@ class Selection {
   [[nodiscard]] Scored grown(std::size_t base_terms);
   [[nodiscard]] Scored pruned(Scored start);
   [[nodiscard]] TermList best_terms();
-  [[nodiscard]] bool discount_suspects(std::span<const DirectedColour> samples);
+  /// What a sample's residual is compared with.
+  enum class Judgement { by_patch, by_neighbours };
+  [[nodiscard]] bool discount_suspects(std::span<const DirectedColour> samples,
+                                       Judgement judgement);
   [[nodiscard]] bool censor(std::span<const DirectedColour> samples);
-  void judge_samples(std::span<const DirectedColour> samples);
-  [[nodiscard]] bool set_factors(std::span<float> factors);
+  void judge_samples();
+  [[nodiscard]] bool set_factors(std::span<const DirectedColour> samples,
+                                 std::span<const float> residuals, Judgement judgement);
   [[nodiscard]] std::optional<TermList> with_best_bump(const TermList& terms,
                                                        const Eigen::Vector2f& seen_at);
   void fit(const TermList& terms);

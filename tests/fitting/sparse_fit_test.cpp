@@ -255,14 +255,27 @@ TEST(SparseFit, LoneOutlierIsDiscountedAndHighlightIsNot) {
 
 TEST(SparseFit, WeightsFadeBeyondFiveDeviations) {
   // Median 0.1: threshold 5 x 1.4826 x 0.1 = 0.7413. At twice that the factor is 1 / 4.
-  std::array<float, 5> factors{0.1f, 0.1f, 0.74f, 0.05f, 1.4826f};
-  EXPECT_TRUE(robust_factors(factors, 0.001f));
-  EXPECT_EQ(factors[0], 1.0f);
-  EXPECT_EQ(factors[2], 1.0f);
-  EXPECT_NEAR(factors[4], 0.25f, 1e-5f);
+  const std::array<float, 5> residuals{0.1f, 0.1f, 0.74f, 0.05f, 1.4826f};
+  const float threshold = suspect_threshold(residuals, 0.001f);
+  EXPECT_EQ(robust_factor(0.1f, threshold), 1.0f);
+  EXPECT_EQ(robust_factor(0.74f, threshold), 1.0f);
+  EXPECT_NEAR(robust_factor(1.4826f, threshold), 0.25f, 1e-5f);
   // The floor stands in for a median of zero: threshold 5 x 0.01.
-  std::array<float, 3> calm{0.0f, 0.0f, 0.04f};
-  EXPECT_FALSE(robust_factors(calm, 0.01f));
+  const std::array<float, 3> calm{0.0f, 0.0f, 0.04f};
+  EXPECT_FLOAT_EQ(suspect_threshold(calm, 0.01f), 0.05f);
+}
+
+TEST(SparseFit, ResidualsAroundASampleAreThoseOfItsNeighbours) {
+  // Twenty samples on a line, residuals 0 to 1.9: nearest to number 10 are 7, 8, 9, 11, 12, 13 and
+  // one of 6 and 14; the middle one of these is 9 or 11.
+  std::vector<DirectedColour> samples;
+  std::vector<float> residuals;
+  for (int i = 0; i < 20; ++i) {
+    samples.push_back({{0.04f * static_cast<float>(i) - 0.4f, 0}, Eigen::Vector3f::Zero()});
+    residuals.push_back(0.1f * static_cast<float>(i));
+  }
+  EXPECT_NEAR(residual_around(samples, residuals, 10), 1.0f, 0.101f);
+  EXPECT_EQ(residual_around({samples.data(), 1}, {residuals.data(), 1}, 0), 0.0f);
 }
 
 TEST(SparseFit, PredictedErrorIsFiniteAndRisesAwayFromSamples) {
