@@ -52,17 +52,16 @@ class QuadPatchFit {
   }
 
   SHEEN_INLINE void prefetch(Real u, Real v) const {
-    constexpr std::size_t line = 64;
     for (std::size_t quad = 0; quad < fit_.tree.quad_count; ++quad) {
-      const Place place = place_of(fit_.tree.quads[quad], u, v);
-      if (bits_of(place.covered) == 0) continue;
-      const auto* const rows = reinterpret_cast<const char*>(moments(quad).rows);
-      const bool whole = quad >= fit_.tree.first_finest;
-      const std::size_t bytes = whole ? kQuadReals * sizeof(Real) : line;
-      for (std::size_t at = 0; at < bytes; at += line) __builtin_prefetch(rows + at, 1);
-      if (!whole) continue;
-      const auto* const stored = reinterpret_cast<const char*>(coefficients(quad));
-      for (std::size_t at = 0; at < kQuadHalves * 2; at += line) __builtin_prefetch(stored + at, 1);
+      const bool covered = bits_of(place_of(fit_.tree.quads[quad], u, v).covered) != 0;
+      const bool finest = quad >= fit_.tree.first_finest;
+      if (covered) {
+        fetch(moments(quad).rows, kept_whole(quad) ? kQuadReals * sizeof(Real) : kCacheLine);
+      }
+      // Lanes without samples follow the prior, wherever the sample is.
+      if (finest && (covered || seen(quad) != kAllLanes)) {
+        fetch(coefficients(quad), kQuadHalves * sizeof(std::uint16_t));
+      }
     }
   }
 
@@ -72,6 +71,12 @@ class QuadPatchFit {
   static constexpr std::size_t kQuadReals = kLanes * Rows::kRows;
   static constexpr std::size_t kQuadHalves = kLanes * 3 * kTerms;
   static constexpr std::size_t kMaxQuads = QuadTree<Real>::kMaxQuads;
+  static constexpr std::size_t kCacheLine = 64;
+
+  static SHEEN_INLINE void fetch(const void* from, std::size_t bytes) {
+    const auto* const first = static_cast<const char*>(from);
+    for (std::size_t at = 0; at < bytes; at += kCacheLine) __builtin_prefetch(first + at, 1);
+  }
 
   struct Place {
     L x, y, distance2;
@@ -97,6 +102,10 @@ class QuadPatchFit {
   [[nodiscard]] SHEEN_INLINE LaneBits split(std::size_t quad) const {
     return patch_.flags[quad] >> 4;
   }
+  // Whether all moments of the quad are kept up to date, or weight and mean only.
+  [[nodiscard]] SHEEN_INLINE bool kept_whole(std::size_t quad) const {
+    return quad >= fit_.tree.first_finest || fit_.rule.faithful || split(quad) != kAllLanes;
+  }
   static SHEEN_INLINE std::size_t child(std::size_t quad, std::size_t lane) {
     return quad == 0 ? 1 : 4 * (quad - 1) + lane + 2;
   }
@@ -108,8 +117,7 @@ class QuadPatchFit {
     just_split_[quad] = 0;
     if (covered == 0) return;
     const L theta = weights<Real>(place.distance2, place.covered);
-    const bool finest = quad >= fit_.tree.first_finest;
-    if (!finest && !fit_.rule.faithful && split(quad) == kAllLanes) {
+    if (!kept_whole(quad)) {
       moments(quad).template add<false>(place.x, place.y, theta, rgb);
       return;
     }
