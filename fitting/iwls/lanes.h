@@ -59,14 +59,6 @@ SHEEN_INLINE void save(Real* to, Lanes<Real> value) {
   __builtin_memcpy(to, &value, sizeof(value));
 }
 
-template <typename Real>
-SHEEN_INLINE LaneMask<Real> mask_of(LaneBits bits) {
-  using Integer = decltype(LaneMask<Real>{}[0] + 0);
-  const auto b = static_cast<Integer>(bits);
-  const LaneMask<Real> own = {1, 2, 4, 8};
-  return (LaneMask<Real>{b, b, b, b} & own) != 0;
-}
-
 SHEEN_INLINE LaneBits bits_of(LaneMask<float> mask) {
 #if defined(__SSE2__)
   return static_cast<LaneBits>(_mm_movemask_ps(reinterpret_cast<__m128>(mask)));

@@ -8,9 +8,7 @@
 
 #include <cstddef>
 
-namespace sheen::fitting::iwls {
-
-namespace SHEEN_LANES {
+namespace sheen::fitting::iwls::SHEEN_LANES {
 
 /// A quad's samples as a fit needs them (eq. 2): weight, means and centred moments, updated by
 /// West's recurrence. Centred, single precision is enough for any number of samples in any spot;
@@ -191,5 +189,4 @@ struct QuadMoments {
   }
 };
 
-}  // namespace SHEEN_LANES
-}  // namespace sheen::fitting::iwls
+}  // namespace sheen::fitting::iwls::SHEEN_LANES
