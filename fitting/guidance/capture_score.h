@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "fitting/guidance/frame_gate.h"
+#include "fitting/guidance/quality_curve.h"
+#include "fitting/guidance/view_need.h"
+
+namespace sheen::fitting::guidance {
+
+/// What is kept while views arrive: where they are missing, whether they fit, how good it gets.
+struct CaptureScore {
+  ViewNeed need;
+  FrameGate gate;
+  QualityCurve curve;
+
+  explicit CaptureScore(std::size_t patch_count) : need(patch_count) {}
+
+  /// Judges a view before it is absorbed.
+  FrameVerdict judge(const core::SampleBatch& batch, const LightField& model) {
+    score_ = need.score(batch, model);
+    return gate.judge(score_);
+  }
+
+  /// The view judged last is about to be absorbed; `coverage` as known, [0, 1].
+  void note(const core::SampleBatch& batch, double coverage) {
+    need.note(batch);
+    curve.add(score_, coverage);
+  }
+
+ private:
+  FrameScore score_;
+};
+
+}  // namespace sheen::fitting::guidance
