@@ -53,7 +53,9 @@ namespace sheen::render::gl {
   X(PFNGLREADPIXELSPROC, ReadPixels)                                   \
   X(PFNGLSHADERSOURCEPROC, ShaderSource)                               \
   X(PFNGLTEXTUREBUFFERPROC, TextureBuffer)                             \
+  X(PFNGLTEXTUREPARAMETERIPROC, TextureParameteri)                     \
   X(PFNGLTEXTURESTORAGE2DPROC, TextureStorage2D)                       \
+  X(PFNGLTEXTURESUBIMAGE2DPROC, TextureSubImage2D)                     \
   X(PFNGLUSEPROGRAMPROC, UseProgram)                                   \
   X(PFNGLVERTEXARRAYATTRIBBINDINGPROC, VertexArrayAttribBinding)       \
   X(PFNGLVERTEXARRAYATTRIBFORMATPROC, VertexArrayAttribFormat)         \

@@ -40,6 +40,9 @@ GLuint OffscreenTarget::framebuffer(int width_px, int height_px) {
   Texture colour;
   if (with_colour_) {
     colour = make_plane(gl_, GL_RGBA8, width_px, height_px);
+    gl_.TextureParameteri(colour.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    gl_.TextureParameteri(colour.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+    gl_.TextureParameteri(colour.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     gl_.NamedFramebufferTexture(made.name(), GL_COLOR_ATTACHMENT0, colour.name(), 0);
   }
   if (gl_.CheckNamedFramebufferStatus(made.name(), GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {

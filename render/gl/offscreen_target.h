@@ -15,6 +15,9 @@ class OffscreenTarget {
   /// current. Throws core::Error (run_failed) for sizes the driver cannot make.
   GLuint framebuffer(int width_px, int height_px);
 
+  /// Colour plane of the framebuffer last returned, for drawing it elsewhere; 0 without one.
+  [[nodiscard]] GLuint colour_texture() const { return colour_.name(); }
+
  private:
   const Functions& gl_;
   bool with_colour_;

@@ -48,4 +48,7 @@ std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl, const core::Mesh& mesh,
                                                const fitting::LightField& light_field);
 
+/// Whether the representation has a shader of its own, which reads the light field in `upload` only.
+bool has_patch_shader(const fitting::LightField& light_field);
+
 }  // namespace sheen::render

@@ -34,6 +34,10 @@ Factory factory_of(const fitting::LightField& light_field) {
 
 }  // namespace
 
+bool has_patch_shader(const fitting::LightField& light_field) {
+  return factory_of(light_field) != nullptr;
+}
+
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
                                                const fitting::LightField& light_field) {
   if (const Factory make = factory_of(light_field)) return make(gl, light_field);
