@@ -10,6 +10,7 @@
 #include "app/commands/replay.h"
 #include "app/commands/survey.h"
 #include "app/commands/synth.h"
+#include "app/commands/view.h"
 #include "app/interrupt.h"
 #include "core/diagnostics/error.h"
 
@@ -59,6 +60,7 @@ int main(int argc, char** argv) {
   app::add_compare_command(program, context);
   app::add_synth_command(program, context);
   app::add_info_command(program, context);
+  app::add_view_command(program, context);
 
   app::watch_for_interrupts();
   // FFmpeg reports damaged pictures on stderr by itself; ours is the one line that counts.

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <utility>
 
 namespace sheen::app {
@@ -28,10 +29,12 @@ void check_size(const capture::CameraDescription& camera, const core::CameraMode
                         "choose that --size or calibrate at this one");
 }
 
-capture::RecordingTerms terms_of(const CaptureOptions& options, const CommandContext& context) {
+capture::RecordingTerms terms_of(const CaptureOptions& options, const CommandContext& context,
+                                 const std::atomic<bool>& window_closed) {
   return {.frames = options.frames,
           .seconds = options.seconds,
-          .is_enough = [] { return FinishOnInterrupt::wants_to_finish(); },
+          .is_enough =
+              [&window_closed] { return FinishOnInterrupt::wants_to_finish() || window_closed; },
           .on_disk_fault = [&context](const core::Error& fault) { context.note(fault.what()); }};
 }
 
@@ -66,11 +69,13 @@ std::string to_text(const CaptureOptions& options, const capture::RecordingStatu
 void run_capture(const CaptureOptions& options, const CommandContext& context) {
   if (options.list) return list_cameras(context);
   if (options.session.empty()) throw CLI::RequiredError("--output");
+  CaptureOptions watched = options;
+  watched.fit.preview = !options.headless;
   capture::V4l2CameraOptions wish = options.camera;
   const core::CameraModel model = read_setup(options).camera;
   if (!wish.mode.size) wish.mode.size = capture::PictureSize{model.width_px(), model.height_px()};
   capture_session(std::make_unique<capture::V4l2Camera>(capture::kernel_v4l2_system(), wish),
-                  options, context);
+                  watched, context);
 }
 
 }  // namespace
@@ -88,12 +93,15 @@ void capture_session(std::unique_ptr<capture::Camera> camera, const CaptureOptio
   const capture::Session session = capture::open_session(options.session);
   context.check_outputs({fit.output});
   const FinishOnInterrupt finishing;
-  capture::CameraRecording recording(std::move(camera), recorder, terms_of(options, context));
+  std::atomic<bool> window_closed{false};
+  capture::CameraRecording recording(std::move(camera), recorder,
+                                     terms_of(options, context, window_closed));
 
   // Fit what comes; a camera that failed says more than that there was nothing to fit.
+  const LiveCamera live{[&window_closed] { window_closed = true; }};
   FitOutcome outcome;
   try {
-    outcome = fit_session(fit, session, std::nullopt, recording.frames(), context);
+    outcome = fit_session(fit, session, std::nullopt, recording.frames(), context, &live);
   } catch (const core::Error&) {
     recording.stop();
     if (const auto fault = recording.status().camera_fault) throw core::Error(*fault);

@@ -10,6 +10,7 @@
 #include "app/pipeline/pose_stage.h"
 #include "app/pipeline/replay_report.h"
 #include "app/pipeline/session_board.h"
+#include "app/preview/run_preview.h"
 #include "capture/pose/trajectory.h"
 #include "core/diagnostics/cpu_clock.h"
 #include "core/diagnostics/error.h"
@@ -29,37 +30,48 @@ namespace {
 struct LightFields {
   std::unique_ptr<fitting::Representation> fitted;
   std::unique_ptr<fitting::Representation> mean;  ///< null when `fitted` is the mean itself
+  /// The same two where views may be taken back; else null.
+  fitting::RewindableRepresentation* fitted_history = nullptr;
+  fitting::RewindableRepresentation* mean_history = nullptr;
 
   LightFields(const ReplayOptions& options, const core::Mesh& mesh, int threads) {
     const auto neighbours = core::vertex_neighbours(mesh);
     const fitting::RepresentationOptions fit_options{
         .iwls = options.iwls, .threads = threads, .sparse = options.sparse};
-    fitted = fitting::make_representation(options.registered_name(), neighbours, fit_options);
-    if (options.registered_name() != "mean") {
-      mean = fitting::make_representation("mean", neighbours, fit_options);
-    }
+    const auto make = [&](const std::string& name, fitting::RewindableRepresentation*& history)
+        -> std::unique_ptr<fitting::Representation> {
+      if (!options.preview) return fitting::make_representation(name, neighbours, fit_options);
+      auto rewindable = std::make_unique<fitting::RewindableRepresentation>(
+          [=] { return fitting::make_representation(name, neighbours, fit_options); });
+      history = rewindable.get();
+      return rewindable;
+    };
+    fitted = make(options.registered_name(), fitted_history);
+    if (options.registered_name() != "mean") mean = make("mean", mean_history);
   }
 
   [[nodiscard]] const fitting::LightField& mean_colours() const {
     return mean ? mean->light_field() : fitted->light_field();
   }
 
-  /// Returns the CPU time of the fitted one.
-  [[nodiscard]] double finish() {
+  /// Finishes the fitted one through `model`, which guards it; returns the CPU time of that.
+  [[nodiscard]] double finish(SharedModel& model) {
     const double start_ms = core::own_cpu_ms();
-    fitted->finish();
+    model.finish();
     const double elapsed_ms = core::own_cpu_ms() - start_ms;
     if (mean) mean->finish();
     return elapsed_ms;
   }
 };
 
+/// `live` may be null.
 core::StageTimer fit_frames(PoseStage& poses, ModelStage& stage, std::optional<int> frame_count,
-                            const CommandContext& context) {
+                            const CommandContext& context, LiveSession* live) {
   Progress progress = context.progress("fitting", frame_count.value_or(0));
   const FrameStatistics& frames = stage.statistics();
-  return run_pipeline(poses, stage, context.threads > 1, [&](const TrackedFrame&) {
+  return run_pipeline(poses, stage, context.threads > 1, [&](const TrackedFrame& tracked) {
     progress.show(frames.frames_read, fmt::format("{} posed", frames.posed.size()));
+    if (live != nullptr) live->on_frame(tracked, frames);
   });
 }
 
@@ -190,6 +202,46 @@ void add_held_out(const ReplayOptions& options, const capture::Session& session,
   }
 }
 
+/// What a window looks at; null without --preview.
+std::unique_ptr<LiveSession> make_live_session(const ReplayOptions& options,
+                                               const capture::Session& session,
+                                               const core::Mesh& mesh, const LightFields& fields,
+                                               SharedModel& model, bool is_camera) {
+  if (!options.preview) return nullptr;
+  return std::make_unique<LiveSession>(
+      LiveSession::Parts{.model = model,
+                         .history = *fields.fitted_history,
+                         .baseline = fields.mean_history,
+                         .mesh = mesh,
+                         .camera = session.camera,
+                         .stage_from_object = session.stage_from_object,
+                         .limits = options.limits,
+                         .is_camera = is_camera,
+                         .refuse_faults = options.refuse_mismatches,
+                         .save = [&](const fitting::LightField& light_field) {
+                           fitting::write_model(options.output, mesh, light_field);
+                           return "Saved " + options.output.filename().string();
+                         }});
+}
+
+/// Who decides whether samples are taken in; nobody when all of them are.
+std::function<bool(const core::SampleBatch&)> admission(const ReplayOptions& options,
+                                                        SharedModel& model, LiveSession* live) {
+  if (live != nullptr) return [live](const core::SampleBatch& batch) { return live->admit(batch); };
+  if (!options.refuse_mismatches) return {};
+  const auto patches =
+      model.with([](const fitting::Representation& r) { return r.light_field().patch_count(); });
+  const auto score = std::make_shared<fitting::guidance::CaptureScore>(patches);
+  return [&model, score](const core::SampleBatch& batch) {
+    const auto verdict = model.with([&](const fitting::Representation& representation) {
+      return score->judge(batch, representation.light_field());
+    });
+    if (verdict != fitting::guidance::FrameVerdict::fine) return false;
+    score->note(batch, 0);
+    return true;
+  };
+}
+
 void run_replay(const ReplayOptions& options, const CommandContext& context) {
   // Open everything that may be wrong before the long work.
   context.check_outputs({options.output, options.mean_output, options.poses_output});
@@ -206,16 +258,17 @@ void run_replay(const ReplayOptions& options, const CommandContext& context) {
 
 FitOutcome fit_session(const ReplayOptions& options, const capture::Session& session,
                        const std::optional<capture::BoardRefinement>& refinement,
-                       std::unique_ptr<capture::FrameSource> frames,
-                       const CommandContext& context) {
+                       std::unique_ptr<capture::FrameSource> frames, const CommandContext& context,
+                       const LiveCamera* camera) {
   const capture::Board* const board = refinement ? &refinement->board : nullptr;
   const core::Mesh mesh = read_patch_mesh(session, options, board);
   const std::optional<int> frame_count = frames->frame_count();
   ChosenVisibility visibility(options.visibility, mesh, context.threads);
 
-  // Fit frame by frame.
+  // Fit frame by frame, watched or not.
   LightFields fields(options, mesh, context.threads);
   SharedModel model(*fields.fitted);
+  const auto live = make_live_session(options, session, mesh, fields, model, camera != nullptr);
   PoseStage poses(std::move(frames), make_pose_estimator(session, options.session.pose_source,
                                                          options.session.gate, board));
   ModelStage stage({.visibility = std::move(visibility.method),
@@ -227,18 +280,34 @@ FitOutcome fit_session(const ReplayOptions& options, const capture::Session& ses
                     .baseline = fields.mean.get(),
                     .hold_out = {options.session.hold_out},
                     .photometric = options.photometric,
-                    .threads = context.threads});
-  const core::StageTimer timer = fit_frames(poses, stage, frame_count, context);
-  check_something_was_seen(session, stage.statistics(), fields.fitted->statistics().samples);
-  const double finish_ms = fields.finish();
+                    .threads = context.threads,
+                    .admit = admission(options, model, live.get())});
+  FitOutcome outcome;
+  const auto work = [&] {
+    const core::StageTimer timer = fit_frames(poses, stage, frame_count, context, live.get());
+    check_something_was_seen(session, stage.statistics(), fields.fitted->statistics().samples);
+    const double finish_ms = fields.finish(model);
 
-  // Save, measure and report.
-  save(options, mesh, fields, stage.statistics().posed);
-  ReplayReport report = describe(options, fields, stage.statistics(), timer);
-  report.board = refinement;
-  report.finish_ms = finish_ms;
-  add_held_out(options, session, mesh, fields, stage, context, report);
-  return {to_json(report), to_text(report) + "written  " + options.output.string() + "\n"};
+    // Save, measure and report.
+    save(options, mesh, fields, stage.statistics().posed);
+    if (live) live->finish();
+    ReplayReport report = describe(options, fields, stage.statistics(), timer);
+    report.board = refinement;
+    report.finish_ms = finish_ms;
+    add_held_out(options, session, mesh, fields, stage, context, report);
+    outcome = {to_json(report), to_text(report) + "written  " + options.output.string() + "\n"};
+  };
+  if (!live) {
+    work();
+    return outcome;
+  }
+  run_preview({.title = options.session.folder.filename().string() + " \u2013 Sheen",
+               .mesh = mesh,
+               .up = live->up(),
+               .live = live.get(),
+               .snapshot_folder = options.snapshots},
+              work, camera != nullptr ? camera->on_window_closed : nullptr);
+  return outcome;
 }
 
 void add_replay_command(CLI::App& program, CommandContext& context) {

@@ -7,6 +7,7 @@
 #include "capture/session/session.h"
 #include "capture/source/frame_source.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -19,11 +20,18 @@ struct FitOutcome {
   std::string text;
 };
 
-/// Fits `frames` of a session, saves the model and measures it on held-out frames. `refinement`
-/// replaces the session's board.
+/// What a window is told when the frames come from a camera.
+struct LiveCamera {
+  std::function<void()> on_window_closed;  ///< called on the main thread, may be empty
+};
+
+/// Fits `frames` of a session, saves the model and measures it on held-out frames, with
+/// options.preview in a window on the calling thread, which must be the main one. `refinement`
+/// replaces the session's board. `camera` is null for a recording.
 FitOutcome fit_session(const ReplayOptions& options, const capture::Session& session,
                        const std::optional<capture::BoardRefinement>& refinement,
-                       std::unique_ptr<capture::FrameSource> frames, const CommandContext& context);
+                       std::unique_ptr<capture::FrameSource> frames, const CommandContext& context,
+                       const LiveCamera* camera = nullptr);
 
 /// `sheen replay SESSION -o MODEL.glb`: a recording becomes a light field.
 void add_replay_command(CLI::App& program, CommandContext& context);

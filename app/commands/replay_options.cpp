@@ -114,6 +114,13 @@ void add_model_options(CLI::App& command, ReplayOptions& options) {
       ->capture_default_str();
   command.add_flag("--exposure,!--no-exposure", options.photometric.exposure,
                    "Estimate every frame's exposure against the model and take it out");
+  command.add_flag(
+      "--refuse-mismatches", options.refuse_mismatches,
+      "Keep frames out that contradict what earlier ones showed (jump of the exposure, wrong pose)");
+  command
+      .add_option("--snapshots", options.snapshots, "Folder for snapshots of the window (F12)")
+      ->type_name("DIR")
+      ->capture_default_str();
 }
 
 void add_replay_options(CLI::App& command, ReplayOptions& options) {
@@ -145,6 +152,8 @@ void add_replay_options(CLI::App& command, ReplayOptions& options) {
   add_session_options(command, options.session);
   command.add_flag("--refine-board", options.refine_board,
                    "Refine where the tags lie from the whole recording before posing frames");
+  command.add_flag("--preview", options.preview,
+                   "Watch it in a window; the program ends when the window is closed");
   command
       .add_option("--mean-out", options.mean_output,
                   "Also save the mean colours, what a textured mesh would show")
@@ -170,6 +179,7 @@ nlohmann::ordered_json to_json(const ReplayOptions& options) {
           {"pose_error_px", options.photometric.pose_error_px},
           {"refine_board", options.refine_board},
           {"exposure", options.photometric.exposure},
+          {"refuse_mismatches", options.refuse_mismatches},
           {"texel_px", options.texel_px}};
 }
 

@@ -33,7 +33,10 @@ struct ReplayOptions {
   VisibilityMethod visibility = VisibilityMethod::automatic;
   core::SamplingLimits limits;
   PhotometricOptions photometric;
-  bool refine_board = false;  ///< refine the tags' places before their poses are used
+  bool preview = false;                   ///< watched in a window
+  std::filesystem::path snapshots = ".";  ///< folder for the window's snapshots
+  bool refuse_mismatches = false;         ///< keep frames out that contradict the model
+  bool refine_board = false;              ///< refine the tags' places before their poses are used
 
   /// Name of the registry's representation that `representation` and `fitter` come to.
   [[nodiscard]] std::string registered_name() const;

@@ -24,6 +24,7 @@ struct PosedFrame {
 struct FrameStatistics {
   int frames_read = 0;
   int frames_fitted = 0;
+  int frames_refused = 0;                      ///< posed, but not admitted to the model
   std::vector<PosedFrame> posed;               ///< in recorded order, held-out ones included
   std::vector<PosedFrame> held_out;            ///< posed, kept out of the fit
   std::map<std::string, int> pose_rejections;  ///< by name of PoseRejection

@@ -18,9 +18,11 @@ void ModelStage::absorb(TrackedFrame& tracked) {
     statistics_.held_out.push_back(*posed);
   } else {
     observe(tracked.frame, tracked.times, *posed);
-    const auto timing = tracked.times.measure("fit");
-    parts_.model.absorb(batch_);
-    ++statistics_.frames_fitted;
+    if (parts_.admit && !parts_.admit(batch_)) {
+      ++statistics_.frames_refused;
+    } else {
+      take_in(tracked.times);
+    }
   }
   statistics_.posed.push_back(*posed);
 }
@@ -56,13 +58,19 @@ void ModelStage::observe(const capture::Frame& frame, core::StageTimes& times, P
     const auto timing = times.measure("align");
     correct_exposure();
   }
-  if (aligner_) aligner_->note_absorbed(batch_);
   const auto counts = core::count_rejections(view_);
   for (std::size_t i = 0; i < counts.size(); ++i) statistics_.vertex_rejections[i] += counts[i];
+}
+
+void ModelStage::take_in(core::StageTimes& times) {
+  if (aligner_) aligner_->note_absorbed(batch_);
   if (parts_.baseline != nullptr) {
     const auto timing = times.measure("baseline");
     parts_.baseline->absorb(batch_);
   }
+  const auto timing = times.measure("fit");
+  parts_.model.absorb(batch_);
+  ++statistics_.frames_fitted;
 }
 
 void ModelStage::see(const Eigen::Isometry3d& camera_from_object) {

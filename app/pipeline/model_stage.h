@@ -10,6 +10,7 @@
 #include "core/samples/sample_batch.h"
 #include "core/visibility/visibility.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -31,6 +32,9 @@ class ModelStage {
     HoldOut hold_out;
     PhotometricOptions photometric = {};
     int threads = 1;
+    /// Asked before a frame's samples are taken in, on the thread that fits; false keeps them out.
+    /// May be empty.
+    std::function<bool(const core::SampleBatch&)> admit = {};
   };
 
   explicit ModelStage(Parts parts);
@@ -50,6 +54,7 @@ class ModelStage {
   void see(const Eigen::Isometry3d& camera_from_object);
   std::optional<core::Alignment> align(const capture::Frame& frame, PosedFrame& posed);
   void correct_exposure();
+  void take_in(core::StageTimes& times);
 
   Parts parts_;
   core::SurfacePoints points_;

@@ -33,7 +33,7 @@ double fits_per_patch_per_view(const fitting::FitStatistics& fit) {
 }
 
 int rejected(const FrameStatistics& frames) {
-  int sum = 0;
+  int sum = frames.frames_refused;
   for (const auto& [reason, count] : frames.pose_rejections) sum += count;
   return sum;
 }
@@ -83,6 +83,9 @@ std::string frames_text(const FrameStatistics& frames) {
   for (const auto& [reason, count] : frames.pose_rejections) {
     text += fmt::format("         {} refused: {}\n", count, reason);
   }
+  if (frames.frames_refused > 0) {
+    text += fmt::format("         {} refused: mismatch\n", frames.frames_refused);
+  }
   if (!frames.reprojection_px.empty()) {
     text += fmt::format("pose     {:.2f} px median joint reprojection\n",
                         median_of(frames.reprojection_px));
@@ -113,6 +116,7 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
   }
   nlohmann::ordered_json rejections = nlohmann::ordered_json::object();
   for (const auto& [reason, count] : frames.pose_rejections) rejections[reason] = count;
+  if (frames.frames_refused > 0) rejections["mismatch"] = frames.frames_refused;
   return {{"frames",
            {{"read", frames.frames_read},
             {"posed", frames.posed.size()},

@@ -25,6 +25,15 @@ class SharedModel {
     return work(representation_);
   }
 
+  /// Runs `work(representation, changes)` with what changed since such a look was last had, unless
+  /// somebody else has the model right now; returns whether it ran.
+  template <typename Work>
+  bool try_look(const Work& work) {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (lock.owns_lock()) work(representation_, collect_changes());
+    return lock.owns_lock();
+  }
+
   void absorb(const core::SampleBatch& batch) {
     const std::lock_guard lock(mutex_);
     note(representation_.absorb(batch));
@@ -39,6 +48,7 @@ class SharedModel {
   fitting::ModelUpdate take_changes();
 
  private:
+  fitting::ModelUpdate collect_changes();
   void note(const fitting::ModelUpdate& update) {
     for (const std::uint32_t patch_idx : update.patches) is_changed_[patch_idx] = 1;
   }

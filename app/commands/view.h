@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "app/commands/command_context.h"
+
+namespace sheen::app {
+
+void add_view_command(CLI::App& program, CommandContext& context);
+
+}  // namespace sheen::app

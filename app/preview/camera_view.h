@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "app/preview/object_painter.h"
+#include "app/preview/view_state.h"
+#include "render/preview/picture_texture.h"
+
+#include <Eigen/Geometry>
+#include <imgui.h>
+
+#include <optional>
+
+namespace sheen::app {
+
+/// The camera's picture with the object drawn over it where the pose says it is.
+class CameraView {
+ public:
+  explicit CameraView(const render::gl::Functions& gl) : picture_(gl), target_(gl, true) {}
+
+  /// A new picture and where it was taken from; no pose: nothing is drawn over it.
+  void take(const cv::Mat& picture, const core::CameraModel& camera,
+            const std::optional<Eigen::Isometry3d>& camera_from_object);
+
+  void paint(ObjectPainter& painter, const ViewState& state);
+  /// Fills a rectangle of the present ImGui window, the picture as large as fits.
+  void show(const ImVec2& corner, const ImVec2& size, const ViewState& state);
+
+ private:
+  render::PictureTexture picture_;
+  render::gl::OffscreenTarget target_;
+  core::CameraModel camera_;
+  double scale_ = 0;  ///< pixels of the screen per pixel of the picture; 0: not shown yet
+  std::optional<Eigen::Isometry3d> camera_from_object_;
+  bool is_painted_ = false;
+};
+
+}  // namespace sheen::app

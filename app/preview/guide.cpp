@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+#include "app/preview/guide.h"
+
+#include "core/visibility/ray_caster.h"
+#include "fitting/guidance/candidate_views.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace sheen::app {
+namespace {
+
+namespace guidance = fitting::guidance;
+using Clock = std::chrono::steady_clock;
+
+constexpr int kPlaces = 96;
+constexpr std::chrono::milliseconds kShortestRest{400};
+constexpr int kRestPerThought = 9;
+constexpr int kRestPerLook = 2;  // nothing can be said before all places have been looked from
+// Root mean square error in directions seen before that paints a patch in full colour, sRGB.
+constexpr float kFullMisfit = 0.12f;
+
+/// Scores in [0, 1]. Views: deviation to expect from missing views, as a share of what a patch that
+/// nobody has seen has. Misfit: deviation in directions that were seen.
+PatchScores scores_of(const guidance::ViewNeed& need, const std::vector<float>& novel_error,
+                      const std::vector<guidance::DirectionCells>& reachable) {
+  PatchScores scores;
+  const std::size_t count = reachable.size();
+  scores.needs_views.resize(count);
+  scores.misfit.resize(count);
+  const float typical = need.typical_novel_error();
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool unseen = need.patches()[i].samples == 0;
+    scores.needs_views[i] =
+        unseen ? 1.0f
+               : std::min(1.0f, std::sqrt(guidance::missing_variance(need.patches()[i].seen,
+                                                                     reachable[i], novel_error[i]) /
+                                          typical));
+    scores.misfit[i] =
+        unseen ? 0.0f : std::min(1.0f, std::sqrt(need.familiar_error(i)) / kFullMisfit);
+  }
+  return scores;
+}
+
+Eigen::Vector3f centre_of(const core::Mesh& mesh) {
+  Eigen::AlignedBox3f box;
+  for (const Eigen::Vector3f& position : mesh.positions) box.extend(position);
+  return box.center();
+}
+
+}  // namespace
+
+Guide::Guide(Parts parts)
+    : parts_(std::move(parts)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+bool Guide::rest(const std::stop_token& stop, std::chrono::nanoseconds length) {
+  std::unique_lock lock(mutex_);
+  wake_.wait_for(lock, stop, length, [] { return false; });
+  return !stop.stop_requested();
+}
+
+void Guide::run(const std::stop_token& stop) {
+  // Wait for the first camera: it says how far away cameras stand.
+  std::optional<GuideInput> input;
+  while (!(input = parts_.ask())) {
+    if (!rest(stop, kShortestRest)) return;
+  }
+  const Eigen::Vector3f centre = centre_of(parts_.mesh);
+  const float distance_m = (input->eye - centre).norm();
+
+  // Look once from everywhere.
+  const std::vector<float> area = guidance::vertex_areas(parts_.mesh);
+  const core::VertexNeighbours neighbours = core::vertex_neighbours(parts_.mesh);
+  const core::RayCaster caster(parts_.mesh);
+  const guidance::CandidateViews views(
+      parts_.mesh, caster, parts_.limits,
+      guidance::candidate_places(centre, distance_m, parts_.up, kPlaces),
+      [&, last = Clock::now()]() mutable {
+        const bool stopped = !rest(stop, kRestPerLook * (Clock::now() - last));
+        last = Clock::now();
+        return stopped;
+      });
+  const auto reachable =
+      std::make_shared<const std::vector<guidance::DirectionCells>>(views.reachable());
+
+  // Then think again and again about what is missing.
+  do {
+    const auto begin = Clock::now();
+    if (!(input = parts_.ask())) {  // everything has been taken back
+      rest(stop, kShortestRest);
+      continue;
+    }
+    const auto novel_error = guidance::smooth_novel_errors(input->need, neighbours);
+    const auto gains = views.gains(input->need.patches(), novel_error, area);
+    const auto next = guidance::next_place(views.places(), gains, centre, input->eye);
+    GuideAdvice advice{scores_of(input->need, novel_error, *reachable),
+                       guidance::coverage(input->need.patches(), *reachable, area), std::nullopt,
+                       reachable};
+    if (next) advice.next_place = views.places()[*next];
+    parts_.tell(std::move(advice));
+    rest(stop, std::max<std::chrono::nanoseconds>(kRestPerThought * (Clock::now() - begin),
+                                                  kShortestRest));
+  } while (!stop.stop_requested());
+}
+
+}  // namespace sheen::app

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+#include "app/preview/preview_window.h"
+
+#include "core/diagnostics/error.h"
+#include "core/geometry/tangent_frame.h"
+#include "core/image/write_image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace sheen::app {
+namespace {
+
+constexpr int kWidth = 1280;
+constexpr int kHeight = 720;
+constexpr float kPanelWidth = 292;    // in units of the content scale
+constexpr float kInsetWidth = 0.34f;  // of the large view
+constexpr float kMargin = 14;         // in units of the content scale
+constexpr double kUndo_s = 5;
+constexpr double kFineAfter_s = 0.15;  // stillness after which the model is drawn finer
+constexpr std::size_t kBytesPerRedraw = 512 * 1024;
+constexpr std::size_t kRateRedraws = 30;
+
+constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                    ImGuiWindowFlags_NoSavedSettings |
+                                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav;
+
+}  // namespace
+
+PreviewWindow::PreviewWindow(const PreviewSubject& subject)
+    : subject_(subject),
+      window_(subject.title, kWidth, kHeight),
+      painter_(window_.gl(), subject.mesh),
+      model_view_(window_.gl(), subject.mesh, subject.up, subject.live != nullptr),
+      camera_view_(window_.gl()) {
+  if (subject_.light_field != nullptr) painter_.show(*subject_.light_field);
+  if (subject_.live != nullptr) {
+    trail_.lens = &subject_.live->camera();
+    subject_.live->set_wake([] { Window::wake(); });
+  }
+}
+
+bool PreviewWindow::redraw(double longest_wait_s) {
+  const double coarse_wait_s = model_view_.is_coarse() ? kFineAfter_s : longest_wait_s;
+  window_.begin_redraw(painter_.has_changes() ? 0 : std::min(coarse_wait_s, longest_wait_s));
+  for (const KeyPress& press : window_.key_presses()) {
+    if (const auto command = command_of(press)) obey(*command);
+  }
+  if (subject_.live != nullptr) take_news();
+  paint();
+  lay_out();
+  window_.draw();
+  if (std::exchange(snapshot_wanted_, false)) save_snapshot();
+  window_.show();
+  measure_rate();
+  return !window_.wants_to_close();
+}
+
+void PreviewWindow::take_news() {
+  // Counters, picture and pose.
+  status_ = subject_.live->status();
+  if (status_.frames_read != shown_frame_ && !status_.picture.empty()) {
+    shown_frame_ = status_.frames_read;
+    camera_view_.take(status_.picture, subject_.live->camera(), status_.camera_from_object);
+  }
+  if (status_.camera_from_object) trail_.present = status_.camera_from_object;
+  trail_.hint = status_.phase == LiveStatus::Phase::finished ? std::nullopt : status_.hint;
+
+  // Cameras; all of them after an undo.
+  auto news = subject_.live->path_since(trail_.poses.size(), generation_);
+  if (std::exchange(generation_, news.generation) != news.generation) trail_.poses.clear();
+  trail_.poses.insert(trail_.poses.end(), news.poses.begin(), news.poses.end());
+
+  // Scores.
+  if (auto advice = subject_.live->take_advice()) {
+    painter_.set_scores(std::move(advice->scores));
+    reachable_ = std::move(advice->reachable);
+  }
+  if (!painter_.draws_from_model()) look_at_model();
+}
+
+void PreviewWindow::look_at_model() {
+  subject_.live->try_look([this](const fitting::LightField& light_field,
+                                 const fitting::ModelUpdate& changes, std::size_t rewinds) {
+    if (!has_model_ || rewinds != rewinds_) {
+      painter_.show(light_field);
+      has_model_ = true;
+      rewinds_ = rewinds;
+    } else {
+      painter_.note_changes(changes);
+    }
+    painter_.send_changes(kBytesPerRedraw);
+    if (painter_.draws_from_model()) model_view_.paint(painter_, state_.layer);
+  });
+}
+
+void PreviewWindow::paint() {
+  const bool borrows = subject_.live != nullptr && painter_.draws_from_model();
+  if (borrows) {
+    look_at_model();
+    return;
+  }
+  model_view_.paint(painter_, state_.layer);
+  if (subject_.live != nullptr) camera_view_.paint(painter_, state_);
+}
+
+void PreviewWindow::lay_out() {
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  const float panel = std::min(kPanelWidth * window_.content_scale(), 0.5f * display.x);
+  const ImVec2 view(display.x - panel, display.y);
+  show_views(view);
+  show_panel({view.x, 0}, {panel, display.y});
+  if (const auto patch = patch_news()) {
+    const float margin = kMargin * window_.content_scale();
+    show_patch_card(*patch, {view.x - margin, view.y - margin});
+  }
+  if (state_.help) show_help(subject_.live != nullptr);
+}
+
+void PreviewWindow::show_views(const ImVec2& size) {
+  ImGui::SetNextWindowPos({0, 0});
+  ImGui::SetNextWindowSize(size);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{0, 0});
+  ImGui::Begin("views", nullptr, kFixed | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::PopStyleVar();
+  const bool has_camera = subject_.live != nullptr;
+  const bool camera_is_large = has_camera && state_.camera_is_large;
+  if (camera_is_large) {
+    camera_view_.show({0, 0}, size, state_);
+  } else {
+    model_view_.show({0, 0}, size, state_, trail_, true);
+  }
+  if (has_camera) {
+    // The other one stands in the lower left corner, framed.
+    const float margin = kMargin * window_.content_scale();
+    const auto& lens = subject_.live->camera();
+    const float width = kInsetWidth * size.x;
+    const float height =
+        width * static_cast<float>(lens.height_px()) / static_cast<float>(lens.width_px());
+    const ImVec2 corner(margin, size.y - margin - height);
+    if (camera_is_large) {
+      model_view_.show(corner, {width, height}, state_, trail_, false);
+    } else {
+      camera_view_.show(corner, {width, height}, state_);
+    }
+    ImGui::GetWindowDrawList()->AddRect(corner, {corner.x + width, corner.y + height},
+                                        ImGui::GetColorU32(theme::kRaised), 0, 0,
+                                        1.5f * window_.content_scale());
+  }
+  ImGui::End();
+}
+
+void PreviewWindow::show_panel(const ImVec2& corner, const ImVec2& size) {
+  ImGui::SetNextWindowPos(corner);
+  ImGui::SetNextWindowSize(size);
+  ImGui::Begin("panel", nullptr, kFixed & ~ImGuiWindowFlags_NoScrollbar);
+  PanelContents contents;
+  if (!note_.empty()) status_.note = note_;
+  contents.live = subject_.live != nullptr ? &status_ : nullptr;
+  contents.facts = subject_.facts;
+  if (redraws_.size() > 1) {
+    const std::chrono::duration<double> span = redraws_.back() - redraws_.front();
+    contents.redraws_per_s = static_cast<double>(redraws_.size() - 1) / span.count();
+  }
+  for (const Command command : show_side_panel(contents, state_, window_.fonts())) obey(command);
+  ImGui::End();
+}
+
+std::optional<PatchNews> PreviewWindow::patch_news() {
+  const auto vertex = model_view_.vertex_under_cursor();
+  if (!vertex || state_.camera_is_large) return std::nullopt;
+  PatchNews news;
+  news.patch_idx = *vertex;
+  const auto direction = core::direction_towards(
+      core::tangent_frame(subject_.mesh.normals[*vertex]), subject_.mesh.positions[*vertex],
+      core::eye_in_object(model_view_.camera().camera_from_object()));
+  news.present_uv = direction.uv;
+  if (subject_.live == nullptr) {
+    news.colour_at = [this, idx = *vertex](const Eigen::Vector2f& uv) -> Eigen::Vector3f {
+      return subject_.light_field->evaluate(idx, uv).colour();
+    };
+    return news;
+  }
+  const auto known = subject_.live->knowledge_of(*vertex);
+  news.samples = known.samples;
+  news.seen = known.seen;
+  if (reachable_) news.reachable = (*reachable_)[*vertex];
+  return news;
+}
+
+void PreviewWindow::obey(Command command) {
+  switch (command) {
+    case Command::show_radiance:
+      state_.layer = Layer::radiance;
+      break;
+    case Command::show_mesh:
+      state_.layer = Layer::mesh;
+      break;
+    case Command::frame_object:
+      model_view_.camera().frame();
+      break;
+    case Command::snapshot:
+      snapshot_wanted_ = true;
+      break;
+    case Command::help:
+      state_.help = !state_.help;
+      break;
+    case Command::quit:
+      window_.close();
+      break;
+    default:
+      if (subject_.live != nullptr) obey_session(command);
+  }
+}
+
+void PreviewWindow::obey_session(Command command) {
+  note_.clear();
+  switch (command) {
+    case Command::show_needs_views:
+      state_.layer = Layer::needs_views;
+      break;
+    case Command::show_misfit:
+      state_.layer = Layer::misfit;
+      break;
+    case Command::swap_views:
+      state_.camera_is_large = !state_.camera_is_large;
+      break;
+    case Command::toggle_overlay:
+      state_.overlay = !state_.overlay;
+      break;
+    case Command::toggle_path:
+      state_.path = !state_.path;
+      break;
+    case Command::pause:
+      subject_.live->set_paused(status_.phase != LiveStatus::Phase::paused);
+      break;
+    case Command::undo:
+      subject_.live->request_undo(kUndo_s);
+      break;
+    case Command::save:
+      subject_.live->request_save();
+      break;
+    default:
+      break;
+  }
+}
+
+void PreviewWindow::save_snapshot() {
+  picture_ = window_.picture();
+  if (subject_.snapshot_folder.empty()) return;
+  try {
+    // Never over an older one.
+    std::filesystem::path file;
+    do {
+      file = subject_.snapshot_folder / fmt::format("sheen-{:03}.png", ++snapshots_);
+    } while (std::filesystem::exists(file));
+    core::write_image(file, picture_);
+    note_ = "Snapshot " + file.filename().string();
+  } catch (const core::Error& error) {
+    note_ = error.what();
+  }
+}
+
+void PreviewWindow::measure_rate() {
+  redraws_.push_back(std::chrono::steady_clock::now());
+  if (redraws_.size() > kRateRedraws) redraws_.pop_front();
+}
+
+}  // namespace sheen::app

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "app/preview/camera_view.h"
+#include "app/preview/live_session.h"
+#include "app/preview/model_view.h"
+#include "app/preview/object_painter.h"
+#include "app/preview/side_panel.h"
+#include "app/preview/window.h"
+#include "fitting/light_field.h"
+
+#include <Eigen/Core>
+
+#include <chrono>
+#include <deque>
+#include <filesystem>
+#include <string>
+
+namespace sheen::app {
+
+/// What a window is opened for: a finished light field, or a session that is building one. Exactly
+/// one of `light_field` and `live` is set; what is pointed to outlives the window.
+struct PreviewSubject {
+  std::string title;
+  const core::Mesh& mesh;
+  Eigen::Vector3d up;  ///< upright axis in the object frame
+  const fitting::LightField* light_field = nullptr;
+  ModelFacts facts = {};  ///< of a finished light field
+  LiveSession* live = nullptr;
+  std::filesystem::path snapshot_folder = {};
+};
+
+/// The window over a subject. Lives on the main thread.
+class PreviewWindow {
+ public:
+  /// Throws core::Error (run_failed) without a display.
+  explicit PreviewWindow(const PreviewSubject& subject);
+
+  /// Waits for something to happen, at most this long, and draws once. False when the window is to
+  /// be closed.
+  bool redraw(double longest_wait_s);
+
+  /// Does what a key or button would.
+  void obey(Command command);
+
+  [[nodiscard]] const ViewState& state() const { return state_; }
+  [[nodiscard]] OrbitCamera& camera() { return model_view_.camera(); }
+  /// The window as last drawn, CV_8UC3 BGR.
+  [[nodiscard]] const cv::Mat& picture() const { return picture_; }
+  /// Changes that are still on their way to the screen.
+  [[nodiscard]] bool is_behind() const { return painter_.has_changes(); }
+
+ private:
+  void take_news();
+  void look_at_model();
+  void paint();
+  void lay_out();
+  void show_views(const ImVec2& size);
+  void show_panel(const ImVec2& corner, const ImVec2& size);
+  [[nodiscard]] std::optional<PatchNews> patch_news();
+  void obey_session(Command command);
+  void save_snapshot();
+  void measure_rate();
+
+  PreviewSubject subject_;
+  Window window_;
+  ObjectPainter painter_;
+  ModelView model_view_;
+  CameraView camera_view_;
+  ViewState state_;
+  LiveStatus status_;
+  int shown_frame_ = -1;  ///< frames_read when the picture was taken over
+  CameraTrail trail_;
+  std::size_t generation_ = 0;
+  std::size_t rewinds_ = 0;
+  bool has_model_ = false;
+  std::shared_ptr<const std::vector<fitting::guidance::DirectionCells>> reachable_;
+  bool snapshot_wanted_ = false;
+  int snapshots_ = 0;
+  std::string note_;
+  cv::Mat picture_;
+  std::deque<std::chrono::steady_clock::time_point> redraws_;
+};
+
+}  // namespace sheen::app
