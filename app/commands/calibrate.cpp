@@ -199,6 +199,25 @@ void run_calibrate(const CalibrateOptions& options, const CommandContext& contex
                   describe(*found) + fmt::format("written  {}\n", options.output.string()));
 }
 
+void add_target_options(CLI::App& command, CalibrateOptions& options) {
+  auto* target = command.add_option_group("target", "What the pictures show");
+  target->add_option("--board", options.board, "A board of tags, such as sheen board prints")
+      ->type_name("FILE.yaml");
+  target
+      ->add_option("--chessboard", options.chessboard,
+                   "A chessboard with this many inner corners across and down")
+      ->check([](const std::string& text) {
+        capture::Chessboard board;
+        return parse_chessboard(text, board);
+      })
+      ->type_name("COLUMNSxROWS");
+  target->require_option(1);
+  command.add_option("--square-mm", options.square_mm, "Side of the chessboard's squares")
+      ->check(CLI::Range(0.1, 10'000.0).description(""))
+      ->type_name("MM")
+      ->capture_default_str();
+}
+
 }  // namespace
 
 void add_calibrate_command(CLI::App& program, CommandContext& context) {
@@ -223,22 +242,7 @@ void add_calibrate_command(CLI::App& program, CommandContext& context) {
   command->add_option("-o,--output", options->output, "Camera file to write")
       ->required()
       ->type_name("camera.yaml");
-  auto* target = command->add_option_group("target", "What the pictures show");
-  target->add_option("--board", options->board, "A board of tags, such as sheen board prints")
-      ->type_name("FILE.yaml");
-  target
-      ->add_option("--chessboard", options->chessboard,
-                   "A chessboard with this many inner corners across and down")
-      ->check([](const std::string& text) {
-        capture::Chessboard board;
-        return parse_chessboard(text, board);
-      })
-      ->type_name("COLUMNSxROWS");
-  target->require_option(1);
-  command->add_option("--square-mm", options->square_mm, "Side of the chessboard's squares")
-      ->check(CLI::Range(0.1, 10'000.0).description(""))
-      ->type_name("MM")
-      ->capture_default_str();
+  add_target_options(*command, *options);
   command->add_option("--views", options->views, "Pictures to calibrate from, chosen for spread")
       ->check(CLI::Range(3, 100).description(""))
       ->type_name("N")

@@ -22,8 +22,8 @@ namespace {
 
 constexpr std::size_t kPictureViews = 6;
 constexpr std::size_t kTrialViews = 10;
-constexpr int kTurns = 12;              // first guesses of an upright object about z
-constexpr double kTrialSearchM = 0.03;  // between two turns of an object of 15 cm
+constexpr int kTurns = 12;  // first guesses of an upright object about z
+constexpr double kTrialSearch = 0.35;  // of the radius: half-way to the next guess, and more
 
 struct RegisterOptions {
   SessionOptions session;
@@ -81,17 +81,24 @@ Views read_views(const capture::Session& session, const RegisterOptions& options
   return result;
 }
 
+Eigen::AlignedBox3d bounds_of(const core::Mesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& p : mesh.positions) box.extend(p.cast<double>());
+  return box;
+}
+
 /// The turn about z whose outline finds most edges.
 Eigen::Isometry3d best_turn(const capture::Session& session, const core::Mesh& mesh,
                             const Views& views) {
   const auto some = thin_out(views.views, kTrialViews);
+  const double search_m = kTrialSearch * bounds_of(mesh).diagonal().norm() / 2;
   Eigen::Isometry3d best = capture::place_upright(mesh, 0);
   double best_score = 0;
   for (int turn = 0; turn < kTurns; ++turn) {
     throw_if_interrupted();
     const auto guess = capture::place_upright(mesh, 2 * std::numbers::pi * turn / kTurns);
     const auto found =
-        capture::register_object(mesh, session.camera, some, guess, {.search_m = kTrialSearchM});
+        capture::register_object(mesh, session.camera, some, guess, {.search_m = search_m});
     if (!found) continue;
     const double score = found->matched_share / (1 + found->residual_px);
     if (score <= best_score) continue;
@@ -155,6 +162,19 @@ Eigen::Isometry3d first_guess(const RegisterOptions& options, const capture::Ses
   return session.stage_from_object;
 }
 
+/// Writes session.json with the new place; the one it replaces is kept. Returns the lines that say
+/// so.
+std::string save(const std::filesystem::path& session_file, const std::filesystem::path& output,
+                 const Eigen::Isometry3d& stage_from_object) {
+  std::string kept;
+  std::error_code no_throw;
+  if (std::filesystem::equivalent(output, session_file, no_throw)) {
+    kept = fmt::format("kept        {}\n", capture::keep_before(session_file, "register").string());
+  }
+  capture::write_stage_from_object(session_file, output, stage_from_object);
+  return fmt::format("written     {}\n", output.string()) + kept;
+}
+
 void run_register(const RegisterOptions& options, const CommandContext& context) {
   const auto session_file = options.session.folder / "session.json";
   const auto output = options.output.empty() ? session_file : options.output;
@@ -167,9 +187,7 @@ void run_register(const RegisterOptions& options, const CommandContext& context)
 
   // Guess, then align.
   Eigen::Isometry3d guess = first_guess(options, session, mesh, context);
-  Eigen::AlignedBox3d box;
-  for (const auto& p : mesh.positions) box.extend(p.cast<double>());
-  const auto chosen = choose_frames(session, options, guess * box.center(), context);
+  const auto chosen = choose_frames(session, options, guess * bounds_of(mesh).center(), context);
   const Views views = read_views(session, options, chosen);
   if (options.pairs.empty() && options.guess == "upright") guess = best_turn(session, mesh, views);
   const auto found = capture::register_object(mesh, session.camera, views.views, guess,
@@ -180,17 +198,35 @@ void run_register(const RegisterOptions& options, const CommandContext& context)
   }
 
   // Save.
-  if (!options.picture.empty()) {
-    write_picture(options, session, mesh, views, guess, *found);
-  }
-  std::string kept;
-  std::error_code no_throw;
-  if (std::filesystem::equivalent(output, session_file, no_throw)) {
-    kept = fmt::format("kept     {}\n", capture::keep_before(session_file, "register").string());
-  }
-  capture::write_stage_from_object(session_file, output, found->stage_from_object);
-  context.publish(to_json(*found),
-                  describe(*found) + fmt::format("written  {}\n", output.string()) + kept);
+  if (!options.picture.empty()) write_picture(options, session, mesh, views, guess, *found);
+  const std::string lines = save(session_file, output, found->stage_from_object);
+  context.publish(to_json(*found), describe(*found) + lines);
+}
+
+void add_register_options(CLI::App& command, RegisterOptions& options) {
+  command.add_option("session", options.session.folder, "Session folder")->required();
+  command
+      .add_option("-o,--output", options.output,
+                  "Write the changed session.json here (default: into the session)")
+      ->type_name("FILE");
+  command.add_option("--guess", options.guess, "Where to start: session or upright")
+      ->check(CLI::IsMember({"session", "upright"}))
+      ->capture_default_str();
+  command.add_option("--pairs", options.pairs, "Start from three or more picked pairs of points")
+      ->type_name("FILE");
+  command
+      .add_option("--search-mm", options.search_mm, "How far the outline may be off at the start")
+      ->check(CLI::Range(1.0, 200.0).description(""))
+      ->type_name("MM")
+      ->capture_default_str();
+  command.add_option("--views", options.views, "Frames to look at, spread over the recording")
+      ->check(CLI::Range(3, 1000).description(""))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      .add_option("--picture", options.picture,
+                  "Also draw the outline over six frames, before and after")
+      ->type_name("FILE.png");
 }
 
 }  // namespace
@@ -207,29 +243,7 @@ void add_register_command(CLI::App& program, CommandContext& context) {
       "  sheen register SESSION --pairs picked.txt       start from picked points; one a line:\n"
       "                                                  x y z in the mesh  x y z on the stage\n"
       "The session.json it replaces is kept as session.before-register.json.");
-  command->add_option("session", options->session.folder, "Session folder")->required();
-  command
-      ->add_option("-o,--output", options->output,
-                   "Write the changed session.json here (default: into the session)")
-      ->type_name("FILE");
-  command->add_option("--guess", options->guess, "Where to start: session or upright")
-      ->check(CLI::IsMember({"session", "upright"}))
-      ->capture_default_str();
-  command->add_option("--pairs", options->pairs, "Start from three or more picked pairs of points")
-      ->type_name("FILE");
-  command
-      ->add_option("--search-mm", options->search_mm, "How far the outline may be off at the start")
-      ->check(CLI::Range(1.0, 200.0).description(""))
-      ->type_name("MM")
-      ->capture_default_str();
-  command->add_option("--views", options->views, "Frames to look at, spread over the recording")
-      ->check(CLI::Range(3, 1000).description(""))
-      ->type_name("N")
-      ->capture_default_str();
-  command
-      ->add_option("--picture", options->picture,
-                   "Also draw the outline over six frames, before and after")
-      ->type_name("FILE.png");
+  add_register_options(*command, *options);
   add_session_options(*command, options->session);
   add_common_options(*command, context);
   command->callback([options, &context] { run_register(*options, context); });

@@ -5,8 +5,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <string>
 
 namespace sheen::capture {
 namespace {
@@ -67,6 +67,40 @@ double magnification(double largest_m, double tag_m) {
   return power;
 }
 
+/// What decides the scales of the drawing.
+struct Extent {
+  Eigen::AlignedBox2d box;
+  double tag_m = 0;     ///< side of the largest tag
+  double shift_m = 0;   ///< largest, in the plane
+  double height_m = 0;  ///< largest, either way
+};
+
+Extent measure(const Board& board) {
+  Extent extent;
+  for (const auto& [id, tag] : board.tags) {
+    for (const Eigen::Vector3d& corner : tag.corners_in_stage()) {
+      extent.box.extend(corner.head<2>());
+    }
+    extent.tag_m = std::max(extent.tag_m, tag.size_m);
+  }
+  return extent;
+}
+
+void draw_shift(cv::Mat& picture, const Map& map, const Board::Tag& tag, const TagChange& change,
+                double factor, double highest_m) {
+  const Eigen::Vector3d from = tag.stage_from_tag.translation();
+  cv::arrowedLine(picture, map.at(from), map.at(from + factor * change.shift_m),
+                  colour_of(change.shift_m.z(), highest_m), 2, cv::LINE_AA, 0, 0.2);
+  cv::putText(picture, fmt::format("{} {:+.2f}", change.id, 1e3 * change.shift_m.z()),
+              map.at(tag.corners_in_stage()[0]) + cv::Point2d(3, -4), cv::FONT_HERSHEY_SIMPLEX,
+              0.38, kInk, 1, cv::LINE_AA);
+}
+
+void write_line(cv::Mat& picture, int above_foot_px, const std::string& text) {
+  cv::putText(picture, text, {kMarginPx, picture.rows - above_foot_px}, cv::FONT_HERSHEY_SIMPLEX,
+              0.45, kInk, 1, cv::LINE_AA);
+}
+
 }  // namespace
 
 std::vector<TagChange> compare_boards(const Board& before, const Board& after) {
@@ -84,48 +118,32 @@ std::vector<TagChange> compare_boards(const Board& before, const Board& after) {
 }
 
 cv::Mat draw_board_change(const Board& before, const Board& after) {
-  // Fit the board into the picture.
-  Eigen::AlignedBox2d box;
-  double tag_m = 0;
-  for (const auto& [id, tag] : before.tags) {
-    for (const Eigen::Vector3d& corner : tag.corners_in_stage()) box.extend(corner.head<2>());
-    tag_m = std::max(tag_m, tag.size_m);
+  const std::vector<TagChange> changes = compare_boards(before, after);
+  Extent extent = measure(before);
+  for (const TagChange& change : changes) {
+    extent.shift_m = std::max(extent.shift_m, change.shift_m.head<2>().norm());
+    extent.height_m = std::max(extent.height_m, std::abs(change.shift_m.z()));
   }
-  const double scale = kSidePx / std::max(box.sizes().maxCoeff(), 1e-6);
-  const Eigen::Vector2d size_px = box.sizes() * scale + Eigen::Vector2d::Constant(2 * kMarginPx);
-  const Map map{box.min(), scale, size_px.y()};
+  const double scale = kSidePx / std::max(extent.box.sizes().maxCoeff(), 1e-6);
+  const Eigen::Vector2d size_px =
+      extent.box.sizes() * scale + Eigen::Vector2d::Constant(2 * kMarginPx);
+  const Map map{extent.box.min(), scale, size_px.y()};
   cv::Mat picture(static_cast<int>(size_px.y()) + kLegendPx,
                   std::max(static_cast<int>(size_px.x()), 420), CV_8UC3, kPaper);
 
-  // Draw tags, then arrows over them.
-  const std::vector<TagChange> changes = compare_boards(before, after);
-  double largest_m = 0;
-  double highest_m = 0;
-  for (const TagChange& change : changes) {
-    largest_m = std::max(largest_m, change.shift_m.head<2>().norm());
-    highest_m = std::max(highest_m, std::abs(change.shift_m.z()));
-  }
-  const double factor = magnification(largest_m, tag_m);
+  const double factor = magnification(extent.shift_m, extent.tag_m);
   for (const TagChange& change : changes) {
     draw_tag(picture, map, before.tags.at(change.id), kBefore, true);
-    draw_tag(picture, map, after.tags.at(change.id), colour_of(change.shift_m.z(), highest_m),
+    draw_tag(picture, map, after.tags.at(change.id), colour_of(change.shift_m.z(), extent.height_m),
              false);
   }
   for (const TagChange& change : changes) {
-    const Eigen::Vector3d from = before.tags.at(change.id).stage_from_tag.translation();
-    const cv::Scalar colour = colour_of(change.shift_m.z(), highest_m);
-    cv::arrowedLine(picture, map.at(from), map.at(from + factor * change.shift_m), colour, 2,
-                    cv::LINE_AA, 0, 0.2);
-    cv::putText(picture, fmt::format("{} {:+.2f}", change.id, 1e3 * change.shift_m.z()),
-                map.at(before.tags.at(change.id).corners_in_stage()[0]) + cv::Point2d(3, -4),
-                cv::FONT_HERSHEY_SIMPLEX, 0.38, kInk, 1, cv::LINE_AA);
+    draw_shift(picture, map, before.tags.at(change.id), change, factor, extent.height_m);
   }
-  cv::putText(picture,
-              fmt::format("arrows {:g} x: largest {:.2f} mm; numbers: tag, height in mm", factor,
-                          1e3 * largest_m),
-              {kMarginPx, picture.rows - 34}, cv::FONT_HERSHEY_SIMPLEX, 0.45, kInk, 1, cv::LINE_AA);
-  cv::putText(picture, "red: higher, green: lower", {kMarginPx, picture.rows - 14},
-              cv::FONT_HERSHEY_SIMPLEX, 0.45, kInk, 1, cv::LINE_AA);
+  write_line(picture, 34,
+             fmt::format("arrows {:g} x: largest {:.2f} mm; numbers: tag, height in mm", factor,
+                         1e3 * extent.shift_m));
+  write_line(picture, 14, "red: higher, green: lower");
   return picture;
 }
 

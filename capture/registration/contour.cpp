@@ -4,8 +4,8 @@
 #include "core/alignment/projection_derivative.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
-#include <map>
 #include <tuple>
 
 namespace sheen::capture {
@@ -94,52 +94,62 @@ ContourFinder::ContourFinder(const core::Mesh& mesh) : mesh_(mesh), rays_(mesh) 
   }
 }
 
+std::vector<bool> ContourFinder::faces_turned_to(const Eigen::Vector3f& eye) const {
+  std::vector<bool> turned(faces_.size());
+  for (std::size_t f = 0; f < faces_.size(); ++f) {
+    turned[f] = faces_[f].normal.dot(eye - faces_[f].centre) > 0;
+  }
+  return turned;
+}
+
+std::optional<ContourFinder::EdgeImage> ContourFinder::image_of(
+    const Edge& edge, const std::vector<bool>& turned_to_eye, const core::CameraModel& camera,
+    const Eigen::Isometry3d& camera_from_object) const {
+  const bool has_two = edge.faces[1] != kNoFace;
+  if (has_two && turned_to_eye[edge.faces[0]] == turned_to_eye[edge.faces[1]]) return std::nullopt;
+  EdgeImage image;
+  image.begin = mesh_.positions[edge.vertices[0]].cast<double>();
+  image.end = mesh_.positions[edge.vertices[1]].cast<double>();
+  const auto first = camera.project(camera_from_object * image.begin);
+  const auto last = camera.project(camera_from_object * image.end);
+  if (!first || !last) return std::nullopt;
+  image.length_px = (*last - *first).norm();
+  if (!(image.length_px > 0)) return std::nullopt;
+  image.normal = (mesh_.normals[edge.vertices[0]] + mesh_.normals[edge.vertices[1]]).cast<double>();
+
+  // Across the edge, away from the nearer face.
+  const std::uint32_t nearer =
+      !has_two || turned_to_eye[edge.faces[0]] ? edge.faces[0] : edge.faces[1];
+  const Eigen::Vector2d along = (*last - *first) / image.length_px;
+  image.across = {-along.y(), along.x()};
+  const auto centre = camera.project(camera_from_object * faces_[nearer].centre.cast<double>());
+  if (centre && image.across.dot(*centre - *first) > 0) image.across = -image.across;
+  return image;
+}
+
 std::vector<ContourPoint> ContourFinder::find(const core::CameraModel& camera,
                                               const Eigen::Isometry3d& camera_from_object,
                                               double spacing_px) const {
   const Eigen::Isometry3d object_from_camera = camera_from_object.inverse();
-  const Eigen::Vector3f eye = object_from_camera.translation().cast<float>();
-  std::vector<bool> faces_eye(faces_.size());
-  for (std::size_t f = 0; f < faces_.size(); ++f) {
-    faces_eye[f] = faces_[f].normal.dot(eye - faces_[f].centre) > 0;
-  }
-
+  const std::vector<bool> turned_to_eye =
+      faces_turned_to(object_from_camera.translation().cast<float>());
+  const Eigen::Array2d last_pixel(camera.width_px() - 1, camera.height_px() - 1);
   std::vector<ContourPoint> points;
   double walked_px = 0;  // since the last point; short edges share it
   for (const Edge& edge : edges_) {
-    const bool has_two = edge.faces[1] != kNoFace;
-    if (has_two && faces_eye[edge.faces[0]] == faces_eye[edge.faces[1]]) continue;
-    const Eigen::Vector3d begin = mesh_.positions[edge.vertices[0]].cast<double>();
-    const Eigen::Vector3d end = mesh_.positions[edge.vertices[1]].cast<double>();
-    const auto first = camera.project(camera_from_object * begin);
-    const auto last = camera.project(camera_from_object * end);
-    if (!first || !last) continue;
-    const double length_px = (*last - *first).norm();
-    if (!(length_px > 0)) continue;
-
-    // Outward: along the surface's normal; at a crease across the edge, away from the nearer face.
-    const std::uint32_t nearer =
-        !has_two || faces_eye[edge.faces[0]] ? edge.faces[0] : edge.faces[1];
-    const Eigen::Vector3d normal = (mesh_.normals[edge.vertices[0]].cast<double>() +
-                                    mesh_.normals[edge.vertices[1]].cast<double>());
-    const auto face_centre =
-        camera.project(camera_from_object * faces_[nearer].centre.cast<double>());
-    const Eigen::Vector2d along = (*last - *first) / length_px;
-    Eigen::Vector2d across(-along.y(), along.x());
-    if (face_centre && across.dot(*face_centre - *first) > 0) across = -across;
-
-    for (walked_px += length_px; walked_px >= spacing_px; walked_px -= spacing_px) {
-      const double share = std::clamp((walked_px - spacing_px) / length_px, 0.0, 1.0);
-      const Eigen::Vector3d p = share * begin + (1 - share) * end;
-      const auto imaged = project_direction(camera, camera_from_object, p, normal);
+    const auto image = image_of(edge, turned_to_eye, camera, camera_from_object);
+    if (!image) continue;
+    for (walked_px += image->length_px; walked_px >= spacing_px; walked_px -= spacing_px) {
+      const double share = std::clamp((walked_px - spacing_px) / image->length_px, 0.0, 1.0);
+      const Eigen::Vector3d p = share * image->begin + (1 - share) * image->end;
+      // Outward is along the surface's normal; at a crease, across the edge.
+      const auto imaged = project_direction(camera, camera_from_object, p, image->normal);
       if (!imaged) continue;
-      const ContourPoint point{p, imaged->pixel, edge.is_sharp ? across : imaged->direction};
-      const Eigen::Vector2d far_corner(camera.width_px() - 1, camera.height_px() - 1);
-      if ((point.pixel.array() < kBorderPx).any() ||
-          (point.pixel.array() > far_corner.array() - kBorderPx).any()) {
-        continue;
-      }
-      if (is_depth_step(camera, object_from_camera, point, (camera_from_object * p).z())) {
+      const ContourPoint point{p, imaged->pixel, edge.is_sharp ? image->across : imaged->direction};
+      const bool is_within = (point.pixel.array() >= kBorderPx).all() &&
+                             (point.pixel.array() <= last_pixel - kBorderPx).all();
+      if (is_within &&
+          is_depth_step(camera, object_from_camera, point, (camera_from_object * p).z())) {
         points.push_back(point);
       }
     }

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace sheen::capture {
@@ -25,6 +26,7 @@ struct ContourPoint {
 /// turned away, or without a second face, that a ray confirms as visible and as a step in depth.
 class ContourFinder {
  public:
+  /// `mesh` must outlive the finder.
   explicit ContourFinder(const core::Mesh& mesh);
 
   /// Points about `spacing_px` apart along the visible contours within the picture.
@@ -50,6 +52,20 @@ class ContourFinder {
     std::array<std::uint32_t, 2> faces{kNoFace, kNoFace};
     bool is_sharp = false;
   };
+
+  /// A contour edge as one view has it.
+  struct EdgeImage {
+    Eigen::Vector3d begin, end;  ///< object frame
+    Eigen::Vector3d normal;      ///< of the surface, not of unit length
+    Eigen::Vector2d across;      ///< unit vector in the picture, away from the nearer face
+    double length_px = 0;
+  };
+
+  [[nodiscard]] std::vector<bool> faces_turned_to(const Eigen::Vector3f& eye) const;
+  /// Nothing for an edge that is no contour from here or lies behind the camera.
+  [[nodiscard]] std::optional<EdgeImage> image_of(
+      const Edge& edge, const std::vector<bool>& turned_to_eye, const core::CameraModel& camera,
+      const Eigen::Isometry3d& camera_from_object) const;
 
   /// Distance along the ray through a pixel to the surface, in units of depth; infinite: none.
   [[nodiscard]] double depth_at(const core::CameraModel& camera,

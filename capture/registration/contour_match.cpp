@@ -16,8 +16,9 @@ constexpr double kIndependence = 0.35;
 constexpr double kPixelSigmaPx = 0.7;  // what a colour step can be told to at best
 
 constexpr int kEdgeStepsPerPx = 2;
-constexpr float kWeakestEdge = 3;  // grey levels per px
-constexpr float kClearEdge = 14;   // weight grows up to here
+constexpr float kWeakestEdge = 3;      // grey levels per px
+constexpr double kClearEdge = 14;      // weight grows up to here
+constexpr double kContradicted = 0.1;  // what an edge still counts against which the colours speak
 
 bool is_inside(const cv::Mat& image, const Eigen::Vector2d& pixel) {
   return pixel.x() >= 1 && pixel.y() >= 1 && pixel.x() < image.cols - 2 &&
@@ -71,6 +72,35 @@ std::optional<EvidenceLine> read_evidence(const cv::Mat& image, const ColourStat
   return line;
 }
 
+/// Colour change per pixel along the line, every half pixel, one step beyond the reach at both
+/// ends.
+using ChangeLine = std::array<float, 2 * kMostReachPx * kEdgeStepsPerPx + 3>;
+
+ChangeLine read_change(const cv::Mat& image, const ContourPoint& point, int steps) {
+  constexpr double arm_px = 0.75;
+  ChangeLine change{};
+  for (int k = -steps - 1; k <= steps + 1; ++k) {
+    const Eigen::Vector2d at =
+        point.pixel + k / static_cast<double>(kEdgeStepsPerPx) * point.outward;
+    const cv::Vec3f difference =
+        bilinear(image, at + arm_px * point.outward) - bilinear(image, at - arm_px * point.outward);
+    change[static_cast<std::size_t>(k + steps + 1)] =
+        std::sqrt(difference.dot(difference) / 3) / static_cast<float>(2 * arm_px);
+  }
+  return change;
+}
+
+/// Place of the local maximum at step `k`, px, by a parabola; nothing where there is none.
+std::optional<double> maximum_near(const ChangeLine& change, int k, int steps) {
+  const auto i = static_cast<std::size_t>(k + steps + 1);
+  const float here = change[i];
+  if (here < kWeakestEdge || here < change[i - 1] || here <= change[i + 1]) return std::nullopt;
+  const auto bend = static_cast<double>(change[i - 1] - 2 * here + change[i + 1]);
+  const double fraction =
+      bend < 0 ? 0.5 * static_cast<double>(change[i - 1] - change[i + 1]) / bend : 0;
+  return (k + fraction) / kEdgeStepsPerPx;
+}
+
 }  // namespace
 
 std::optional<ContourMatch> match_by_colour(const cv::Mat& image, const ColourStatistics& colours,
@@ -105,46 +135,29 @@ std::optional<ContourMatch> match_by_colour(const cv::Mat& image, const ColourSt
 
 std::optional<ContourMatch> match_by_edge(const cv::Mat& image, const ColourStatistics& colours,
                                           const ContourPoint& point, double reach_px) {
-  constexpr std::size_t most = 2 * kMostReachPx * kEdgeStepsPerPx + 3;
-  const int steps = std::min(static_cast<int>(std::ceil(reach_px)), kMostReachPx) * kEdgeStepsPerPx;
-  const auto line = read_evidence(image, colours, point, steps / kEdgeStepsPerPx);
+  const int reach = std::min(static_cast<int>(std::ceil(reach_px)), kMostReachPx);
+  const int steps = reach * kEdgeStepsPerPx;
+  const auto line = read_evidence(image, colours, point, reach);
   if (!line) return std::nullopt;
-
-  // Colour change per pixel along the line, one step beyond the reach at both ends.
-  std::array<float, most> change{};
-  for (int k = -steps - 1; k <= steps + 1; ++k) {
-    const Eigen::Vector2d at =
-        point.pixel + k / static_cast<double>(kEdgeStepsPerPx) * point.outward;
-    const cv::Vec3f difference =
-        bilinear(image, at + 0.75 * point.outward) - bilinear(image, at - 0.75 * point.outward);
-    change[static_cast<std::size_t>(k + steps + 1)] =
-        std::sqrt(difference.dot(difference) / 3) / 1.5F;
-  }
-
-  // Take the best of its maxima.
+  const ChangeLine change = read_change(image, point, steps);
   double best_likelihood = line->at(0);
-  for (int k = -steps / kEdgeStepsPerPx; k <= steps / kEdgeStepsPerPx; ++k) {
-    best_likelihood = std::max(best_likelihood, line->at(k));
-  }
+  for (int k = -reach; k <= reach; ++k) best_likelihood = std::max(best_likelihood, line->at(k));
+
+  // Take the best of the maxima.
   std::optional<ContourMatch> match;
   double best_score = 0;
   for (int k = -steps; k <= steps; ++k) {
-    const auto i = static_cast<std::size_t>(k + steps + 1);
-    const float here = change[i];
-    if (here < kWeakestEdge || here < change[i - 1] || here <= change[i + 1]) continue;
-    const double bend = static_cast<double>(change[i - 1] - 2 * here + change[i + 1]);
-    const double fraction =
-        bend < 0 ? 0.5 * static_cast<double>(change[i - 1] - change[i + 1]) / bend : 0;
-    const double offset = (k + fraction) / kEdgeStepsPerPx;
-    const double near = std::exp(-2 * offset * offset / (reach_px * reach_px));
-    const int pixel = static_cast<int>(std::lround(offset + 0.5));
-    const int bounded = std::clamp(pixel, -steps / kEdgeStepsPerPx, steps / kEdgeStepsPerPx);
-    const double likely = std::exp(line->at(bounded) - best_likelihood);
-    const double score = static_cast<double>(here) * near * (0.1 + likely);
+    const auto offset = maximum_near(change, k, steps);
+    if (!offset) continue;
+    const int pixel = std::clamp(static_cast<int>(std::lround(*offset + 0.5)), -reach, reach);
+    const double likely = std::exp(line->at(pixel) - best_likelihood);
+    const double near = std::exp(-2 * *offset * *offset / (reach_px * reach_px));
+    const auto strength = static_cast<double>(change[static_cast<std::size_t>(k + steps + 1)]);
+    const double score = strength * near * (kContradicted + likely);
     if (score <= best_score) continue;
     best_score = score;
-    match = ContourMatch{
-        offset, std::min(1.0, static_cast<double>(here / kClearEdge)) * (0.1 + 0.9 * likely)};
+    match = ContourMatch{*offset, std::min(1.0, strength / kClearEdge) *
+                                      (kContradicted + (1 - kContradicted) * likely)};
   }
   return match;
 }

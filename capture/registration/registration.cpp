@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "capture/registration/registration.h"
 
+#include "capture/registration/colour_learning.h"
 #include "capture/registration/contour.h"
 #include "capture/registration/contour_match.h"
 #include "core/alignment/projection_derivative.h"
@@ -8,7 +9,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <array>
@@ -30,6 +30,9 @@ constexpr double kSpacingPx = 4;
 constexpr double kSmallestReachPx = 5;
 constexpr double kLargestReachPx = 50;
 constexpr double kMatchedPx = 2;
+constexpr double kFarReach = 0.7;       // share of the search distance at which views are judged
+constexpr double kColourSlackPx = 1.5;  // what the ends of colours may differ by between good views
+constexpr double kEdgeSlackPx = 0.25;
 constexpr double kSmallestSpreadPx = 0.3;
 constexpr double kIndependence = 0.05;  // of the points: neighbours and views share their errors
 constexpr int kSmallestViews = 3;
@@ -62,9 +65,15 @@ class Aligner {
 
   void run(const Stage& stage, Eigen::Isometry3d& stage_from_object) {
     learn_colours(stage, stage_from_object);
+    trust_.assign(views_.size(), 1);
+    if (stage.cue == Cue::edge) {
+      // Seen from afar first: close by, a wrong view finds some edge everywhere.
+      measure({Cue::colour, kFarReach}, stage_from_object);
+      distrust_odd_views(kColourSlackPx);
+    }
     for (int step = 0; step < kStepsPerReach; ++step) {
       measure(stage, stage_from_object);
-      if (stage.cue == Cue::edge) distrust_odd_views();
+      if (stage.cue == Cue::edge) distrust_odd_views(kEdgeSlackPx);
       const Vector6d twist = solve(stage, stage_from_object);
       move(twist, stage_from_object);
       if (twist.norm() * focal_per_metre(stage_from_object) < kShortestStepPx) break;
@@ -74,7 +83,7 @@ class Aligner {
   /// Residuals, uncertainty and counts at the end.
   [[nodiscard]] Registration summarise(const Eigen::Isometry3d& stage_from_object) {
     measure({Cue::edge, kEdgeReachesPx.back()}, stage_from_object);
-    distrust_odd_views();
+    distrust_odd_views(kEdgeSlackPx);
     Registration result;
     result.stage_from_object = stage_from_object;
     std::vector<double> distances_px;
@@ -127,62 +136,10 @@ class Aligner {
   void learn_colours(const Stage& stage, const Eigen::Isometry3d& stage_from_object) {
     colours_ = ColourStatistics();
     for (const RegistrationView& view : views_) {
-      learn_colours(view, reach_px(stage, view, stage_from_object), stage_from_object);
+      learn_colours_of(view.image, contours_, camera_, view.camera_from_stage * stage_from_object,
+                       reach_px(stage, view, stage_from_object), colours_);
     }
     colours_.finish();
-  }
-
-  void learn_colours(const RegistrationView& view, double reach,
-                     const Eigen::Isometry3d& stage_from_object) {
-    constexpr int step_px = 3;
-    const Eigen::Isometry3d camera_from_object = view.camera_from_stage * stage_from_object;
-    const cv::Rect box = box_around(camera_from_object, 2.5 * reach + 4);
-    if (box.area() == 0) return;
-    cv::Mat outside(box.height / step_px + 1, box.width / step_px + 1, CV_8UC1);
-    const auto pixel = [&](int row, int column) {
-      return Eigen::Vector2d(box.x + column * step_px, box.y + row * step_px);
-    };
-    for (int row = 0; row < outside.rows; ++row) {
-      for (int column = 0; column < outside.cols; ++column) {
-        outside.at<std::uint8_t>(row, column) =
-            contours_.covers(camera_, camera_from_object, pixel(row, column)) ? 0 : 255;
-      }
-    }
-    cv::Mat to_object;
-    cv::Mat to_outside;
-    cv::distanceTransform(outside, to_object, cv::DIST_L2, 3);
-    cv::distanceTransform(255 - outside, to_outside, cv::DIST_L2, 3);
-    for (int row = 0; row < outside.rows; ++row) {
-      for (int column = 0; column < outside.cols; ++column) {
-        const Eigen::Vector2d at = pixel(row, column);
-        if (at.x() >= camera_.width_px() || at.y() >= camera_.height_px()) continue;
-        const float in_px = step_px * to_outside.at<float>(row, column);
-        const float out_px = step_px * to_object.at<float>(row, column);
-        const bool is_inner = in_px > static_cast<float>(0.35 * reach);
-        const bool is_outer = out_px > static_cast<float>(0.35 * reach);
-        if (!is_inner && !is_outer) continue;
-        colours_.add(view.image.at<cv::Vec3b>(static_cast<int>(at.y()), static_cast<int>(at.x())),
-                     is_inner);
-      }
-    }
-  }
-
-  /// Bounding box of the object in a picture, grown by a margin and cut to the picture.
-  [[nodiscard]] cv::Rect box_around(const Eigen::Isometry3d& camera_from_object,
-                                    double margin_px) const {
-    Eigen::AlignedBox2d box;
-    for (int corner = 0; corner < 8; ++corner) {
-      const auto pixel = camera_.project(
-          camera_from_object *
-          contours_.bounds().corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
-      if (pixel) box.extend(*pixel);
-    }
-    if (box.isEmpty()) return {};
-    const Eigen::Vector2d low = box.min().array() - margin_px;
-    const Eigen::Vector2d high = box.max().array() + margin_px;
-    return cv::Rect(cv::Point(static_cast<int>(low.x()), static_cast<int>(low.y())),
-                    cv::Point(static_cast<int>(high.x()), static_cast<int>(high.y()))) &
-           cv::Rect(0, 0, camera_.width_px(), camera_.height_px());
   }
 
   /// Matches the outline in every view and sets up its normal equations.
@@ -245,7 +202,7 @@ class Aligner {
 
   /// A view whose outline is off by far more than the others' has a wrong pose or is smeared. What
   /// is usual is said by the views that are trusted most: the median is weighted.
-  void distrust_odd_views() {
+  void distrust_odd_views(double slack_px) {
     std::vector<std::pair<double, double>> sorted;  // median distance, weight
     std::vector<double> medians_px(views_.size(), std::numeric_limits<double>::infinity());
     double weight = 0;
@@ -259,8 +216,10 @@ class Aligner {
     double below = 0;
     auto usual = sorted.begin();
     while (usual + 1 != sorted.end() && (below += usual->second) < weight / 2) ++usual;
-    const double limit_px = 2 * usual->first + 0.25;
-    for (std::size_t v = 0; v < views_.size(); ++v) trust_[v] = medians_px[v] <= limit_px ? 1 : 0;
+    const double limit_px = 2 * usual->first + slack_px;
+    for (std::size_t v = 0; v < views_.size(); ++v) {
+      if (!(medians_px[v] <= limit_px)) trust_[v] = 0;
+    }
   }
 
   [[nodiscard]] Matrix6d sum_of_H() const {

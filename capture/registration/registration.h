@@ -30,8 +30,8 @@ struct Registration {
   double sigma_m = 0;        ///< standard deviation of the centre, in its worst direction
   double sigma_rad = 0;      ///< of the rotation, about its worst axis
   std::size_t points = 0;    ///< of the outline that were matched
-  int views = 0;              ///< pictures that agree with the others
-  std::vector<bool> agrees;   ///< which, by view
+  int views = 0;             ///< pictures that agree with the others
+  std::vector<bool> agrees;  ///< which, by view
 };
 
 /// How far the guess may be off.

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/registration/colour_statistics.h"
+#include "capture/registration/contour.h"
+
+#include <opencv2/core/mat.hpp>
+
+namespace sheen::capture {
+
+/// Adds a picture's colours within the object and round it, both some way off its supposed outline,
+/// which may be wrong by `reach_px`. `image` is CV_8UC3, BGR.
+void learn_colours_of(const cv::Mat& image, const ContourFinder& contours,
+                      const core::CameraModel& camera, const Eigen::Isometry3d& camera_from_object,
+                      double reach_px, ColourStatistics& colours);
+
+}  // namespace sheen::capture
