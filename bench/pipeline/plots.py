@@ -16,6 +16,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
+SINGULAR = {"vertices": "vertex", "views": "view"}
 COLOURS = {"quadtree": "#1f5fa8", "sparse": "#1e8a3c"}
 MARKERS = {"quadtree": "o", "sparse": "s"}
 STAGES = {"decode": "#8e5ea2", "pose": "#c0392b", "visibility": "#d9770b", "sample": "#f5c26b",
@@ -58,7 +59,7 @@ def draw(axes, rows, x, y, title, label):
         ys = [float(row[y]) for row in group]
         axes.plot(xs, ys, color=COLOURS.get(fitter), marker=MARKERS.get(fitter, "^"), label=fitter)
         print(f"{title}, {fitter}: {label} grows as {x}^{exponent(xs, ys):.2f}, "
-              f"{(ys[-1] - ys[0]) / (xs[-1] - xs[0]):.3g} per {x[:-1]}, {ys[-1]:.4g} at {xs[-1]:.0f}")
+              f"{(ys[-1] - ys[0]) / (xs[-1] - xs[0]):.3g} per {SINGULAR[x]}, {ys[-1]:.4g} at {xs[-1]:.0f}")
     axes.set(title=title, xlabel=x, ylabel=label, xscale="log", yscale="log")
     axes.legend()
 
@@ -88,12 +89,10 @@ def draw_stages(source, target):
         widths = [float(row[stage]) for row in rows]
         axes.barh(names, widths, left=left, color=colour, label=stage, height=0.7)
         left = [a + b for a, b in zip(left, widths)]
-    axes.plot([float(row["wall"]) for row in rows], names, "D", color="#222222", markersize=5,
-              label="wall")
-    axes.set(xlabel="milliseconds a frame, medians: CPU by stage, wall of the whole pipeline")
+    axes.set(xlabel="milliseconds a frame, medians of CPU time")
     axes.invert_yaxis()
     axes.grid(axis="y", visible=False)
-    axes.legend(ncols=6, loc="lower center", bbox_to_anchor=(0.5, 1.0))
+    axes.legend(ncols=5, loc="lower center", bbox_to_anchor=(0.5, 1.0))
     figure.savefig(target / "performance-stages.svg", metadata={"Date": None})
 
 
