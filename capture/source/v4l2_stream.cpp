@@ -31,7 +31,11 @@ v4l2_requestbuffers buffer_request(__u32 count) {
   return request;
 }
 
+/// Zero, which no picture has, for a time that no machine has run.
 std::chrono::nanoseconds duration(const timeval& time) {
+  constexpr time_t century_s = 3'155'760'000;
+  if (time.tv_sec < 0 || time.tv_sec > century_s || time.tv_usec < 0 || time.tv_usec >= 1'000'000)
+    return std::chrono::nanoseconds(0);
   return std::chrono::seconds(time.tv_sec) + std::chrono::microseconds(time.tv_usec);
 }
 

@@ -109,6 +109,21 @@ TEST_F(DeviceFaults, ACountThatRunsOverIsNoLoss) {
   EXPECT_EQ(camera.counts().lost, 0);
 }
 
+TEST_F(DeviceFaults, AClockThatRunsOverIsReplaced) {
+  // vivid then stamps pictures as if the machine had run for 2^63 ns or 2^31 s all but a moment.
+  for (const int kind : {1, 2}) {
+    set_control(converter_node, "wrap_timestamp", kind);
+    V4l2Camera camera(kernel_v4l2_system(), quick());
+    const auto pictures = take(camera, 200);
+    ASSERT_EQ(pictures.size(), 200u);
+    expect_times_grow(pictures);
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    EXPECT_LE(pictures.back().time_s, std::chrono::duration<double>(now).count());
+    EXPECT_GT(pictures.front().time_s, 0);
+  }
+  set_control(converter_node, "wrap_timestamp", 0);
+}
+
 TEST_F(DeviceFaults, ACameraInUseIsRefusedWithTheReason) {
   V4l2Camera camera(kernel_v4l2_system(), quick());
   try {
