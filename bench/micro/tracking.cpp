@@ -60,9 +60,10 @@ class Print {
   }
 
   [[nodiscard]] const cv::Mat& picture() const { return picture_; }
+  /// Pixel (0, 0) is the centre of the first pixel.
   static cv::Point2f px(double x_m, double y_m) {
-    return {static_cast<float>(kSide_px / 2.0 + kPx_per_m * x_m),
-            static_cast<float>(kSide_px / 2.0 - kPx_per_m * y_m)};
+    return {static_cast<float>(kSide_px / 2.0 - 0.5 + kPx_per_m * x_m),
+            static_cast<float>(kSide_px / 2.0 - 0.5 - kPx_per_m * y_m)};
   }
 
  private:
@@ -78,8 +79,7 @@ class Print {
     const double half_m = tag.size_m * side / 2;
     const cv::Point2f upper_left = px(middle.x() - half_m, middle.y() + half_m);
     const auto side_px = static_cast<int>(std::lround(2 * half_m * kPx_per_m));
-    picture_(cv::Rect(static_cast<int>(std::lround(upper_left.x)),
-                      static_cast<int>(std::lround(upper_left.y)), side_px, side_px)) = value;
+    picture_(cv::Rect(cvCeil(upper_left.x), cvCeil(upper_left.y), side_px, side_px)) = value;
   }
 
   cv::Mat picture_;

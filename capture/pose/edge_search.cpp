@@ -110,8 +110,8 @@ EdgePositions EdgeSearch::measure_side(const cv::Mat& grey, const TagView& view,
   return positions;
 }
 
-void EdgeSearch::find_sides(const cv::Mat& grey, const std::vector<TagView>& views) {
-  constexpr double spacing_px = 3;
+void EdgeSearch::find_sides(const cv::Mat& grey, const std::vector<TagView>& views,
+                            double spacing_px) {
   constexpr double first_quarter = 0.25;
   constexpr double last_quarter = 0.75;
   observations_.clear();
@@ -123,7 +123,7 @@ void EdgeSearch::find_sides(const cv::Mat& grey, const std::vector<TagView>& vie
       if (!near_begin || !near_end) continue;
       const std::array<Eigen::Vector2d, 2> outward{near_begin->outward, near_end->outward};
       const auto wanted = std::clamp<std::size_t>(
-          static_cast<std::size_t>(views[v].side_px(side) / spacing_px), 6, 12);
+          static_cast<std::size_t>(views[v].side_px(side) / spacing_px), 6, 20);
       const EdgePositions positions = measure_side(grey, views[v], side, outward, wanted);
       if (2 * positions.count < wanted) continue;
       const auto line = fit_line(positions);
