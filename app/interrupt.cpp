@@ -33,6 +33,7 @@ FinishOnInterrupt::FinishOnInterrupt() {
 }
 
 FinishOnInterrupt::~FinishOnInterrupt() {
+  interrupted = false;  // it was obeyed
   only_finishes = false;
 }
 

@@ -2,12 +2,14 @@
 // Camera -> recording -> model, with a camera that plays the sample recording.
 #include "app/commands/capture.h"
 
+#include "app/interrupt.h"
 #include "capture/source/avi_reader.h"
 #include "core/diagnostics/error.h"
 #include "tests/app/program.h"
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <utility>
 
 namespace sheen::tests {
@@ -106,6 +108,28 @@ TEST_F(LiveCapture, KeepsRecordingAndModelWhenTheCameraIsGone) {
   EXPECT_EQ(report()["recording"]["recorded"], delivered);
   EXPECT_FALSE(report()["recording"]["complete"]);
   EXPECT_EQ(model(), replay());
+}
+
+/// Somebody presses Ctrl-C when picture 10 is due.
+class InterruptedCamera : public PlayingCamera {
+ public:
+  std::optional<capture::CameraBuffer> next(std::chrono::milliseconds timeout) override {
+    if (++asked_ == 10) std::raise(SIGINT);
+    return PlayingCamera::next(timeout);
+  }
+
+ private:
+  int asked_ = 0;
+};
+
+TEST_F(LiveCapture, FinishesWhenItIsInterrupted) {
+  app::watch_for_interrupts();
+  options_.frames.reset();
+  app::capture_session(std::make_unique<InterruptedCamera>(), options_, context_);
+  EXPECT_EQ(report()["recording"]["recorded"], 10);
+  EXPECT_TRUE(report()["recording"]["complete"]);
+  EXPECT_EQ(model(), replay());
+  EXPECT_NO_THROW(app::throw_if_interrupted());  // the wish was obeyed
 }
 
 TEST_F(LiveCapture, EndsAfterTheTimeThatWasAskedFor) {
