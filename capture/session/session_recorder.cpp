@@ -60,6 +60,13 @@ void write_description(const fs::path& folder, const std::string& mesh,
   }
 }
 
+/// What a recording holds besides pictures is on the disk before the first of them.
+void flush_files(const fs::path& folder) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    static_cast<void>(FileHandle::open_to_read(entry.path()).flush());
+  }
+}
+
 void refuse_existing(const fs::path& folder) {
   std::error_code no_throw;
   if (!fs::exists(folder, no_throw) || fs::is_empty(folder, no_throw)) return;
@@ -88,6 +95,7 @@ SessionRecorder::SessionRecorder(const fs::path& folder, const SessionSetup& set
                       "free disk space");
   }
   stamps_end_ = heading.size();
+  flush_files(staged.path());
   staged.commit();
 
   writer_ = std::jthread([this] { write_all(); });
@@ -181,11 +189,6 @@ void SessionRecorder::write(const LivePicture& picture) {
 }
 
 void SessionRecorder::flush_until_stopped(const std::stop_token& stop) {
-  // Once what the folder holds besides pictures.
-  std::error_code no_throw;
-  for (const auto& entry : fs::directory_iterator(folder_, no_throw)) {
-    static_cast<void>(FileHandle::open_to_read(entry.path()).flush());
-  }
   std::unique_lock lock(flush_mutex_);
   while (!flush_pause_.wait_for(lock, stop, kFlushPause, [] { return false; })) {
     if (stop.stop_requested()) return;
