@@ -15,6 +15,7 @@ ROOMS = {
     "render": {"core", "fitting", "render"},
     "bench": {"core", "fitting", "bench"},
     "bench/micro": {"core", "capture", "fitting", "render", "bench"},  # programs that measure a stage
+    "bench/pipeline": {"core", "capture", "fitting", "render", "bench", "app"},  # the whole producer
     "app": {"core", "capture", "fitting", "render", "bench", "app"},
 }
 # Libraries that may be met in some rooms only: pattern of the include -> rooms.
@@ -23,7 +24,7 @@ LIBRARIES = {
     r"apriltag/|opencv2/(calib3d|videoio|aruco)": {"capture", "bench/micro"},
     r"tiny_gltf": {"fitting"},
     r"assimp/|embree3/": {"core"},
-    r"CLI/": {"app", "bench"},
+    r"CLI/": {"app", "bench", "bench/pipeline"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
