@@ -226,7 +226,6 @@ TEST(RasterVisibility, NothingToAskIsNoTrouble) {
   EXPECT_EQ(count_of(flat_view, VertexRejection::none), flat.positions.size());
 }
 
-// The kernels alone: the same view by every instruction set, bit by bit, and by the camera model.
 TEST(SamplingKernels, ProjectAsTheCameraModelDoes) {
   const Mesh mesh = row_of_spheres(40, 0.09f);
   for (const Eigen::Vector3d& side : kSides) {
@@ -248,6 +247,42 @@ TEST(SamplingKernels, ProjectAsTheCameraModelDoes) {
       EXPECT_NEAR(view.v[i], direction.uv.y(), 1e-6);
     }
   }
+}
+
+TEST(SamplingKernels, ProjectWithTheSameBitsOnEveryInstructionSet) {
+  const SurfacePoints points = surface_points(sphere(31, 47));
+  // Some behind the camera, some beyond the lens model, some outside the picture.
+  const ProjectionSetup setup{{0.36f, 0.48f, -0.8f, -0.8f, 0.6f, 0, 0.48f, 0.64f, 0.6f},
+                              {0.1f, -0.2f, 0.7f},
+                              {2.4f, 3.2f, 3.0f},
+                              {300, 310},
+                              {320, 240},
+                              {-0.3f, 0.1f, 2e-3f, -1e-3f, 0, 0, 0, 0},
+                              1.5f,
+                              2,
+                              {637, 477},
+                              0.2f};
+  std::vector<VertexView> views;
+  for (const SamplingKernels& kernels : sampling_kernel_sets()) {
+    VertexView& view = views.emplace_back();
+    for (auto* column : {&view.x_px, &view.y_px, &view.depth_m, &view.u, &view.v}) {
+      column->resize(points.size());
+    }
+    view.rejection.resize(points.size());
+    kernels.project(setup,
+                    {points.x.data(), points.y.data(), points.z.data(), points.nx.data(),
+                     points.ny.data(), points.nz.data(), view.x_px.data(), view.y_px.data(),
+                     view.depth_m.data(), view.u.data(), view.v.data(), view.rejection.data()},
+                    0, points.size());
+    EXPECT_EQ(view.x_px, views.front().x_px) << kernels.instruction_set;
+    EXPECT_EQ(view.y_px, views.front().y_px);
+    EXPECT_EQ(view.depth_m, views.front().depth_m);
+    EXPECT_EQ(view.u, views.front().u);
+    EXPECT_EQ(view.v, views.front().v);
+    EXPECT_EQ(view.rejection, views.front().rejection);
+  }
+  EXPECT_GT(count_of(views.front(), VertexRejection::none), 20u);
+  EXPECT_GT(count_of(views.front(), VertexRejection::outside_image), 20u);
 }
 
 }  // namespace
