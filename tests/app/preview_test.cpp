@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: MIT
+#include "app/pipeline/model_stage.h"
+#include "app/pipeline/pipeline.h"
+#include "app/pipeline/session_parts.h"
+#include "app/preview/live_session.h"
+#include "app/preview/orbit_camera.h"
+#include "app/preview/overlay.h"
+#include "app/preview/reasons.h"
+#include "capture/session/session.h"
+#include "core/mesh/neighbours.h"
+#include "core/visibility/ray_visibility.h"
+#include "fitting/model_file/model_file.h"
+#include "fitting/registry.h"
+#include "tests/app/program.h"
+#include "tests/core/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <set>
+
+namespace sheen::app {
+namespace {
+
+OrbitCamera camera_round_a_sphere() {
+  return {core::testing::sphere(8, 16), Eigen::Vector3d::UnitZ()};
+}
+
+Eigen::Vector3d eye_of(const OrbitCamera& camera) {
+  return camera.camera_from_object().inverse().translation();
+}
+
+TEST(OrbitCamera, PosesAreRigidAndUpright) {
+  OrbitCamera camera = camera_round_a_sphere();
+  for (int i = 0; i < 60; ++i) {
+    camera.orbit({37.0 * i, 11.0 * (i % 7) - 30}, 500);
+    const Eigen::Matrix3d axes = camera.camera_from_object().linear();
+    EXPECT_LT((axes * axes.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-9);
+    EXPECT_NEAR(axes.determinant(), 1, 1e-9);
+    EXPECT_NEAR((axes * Eigen::Vector3d::UnitZ()).x(), 0, 1e-9);  // the horizon is level
+    EXPECT_LT((axes * Eigen::Vector3d::UnitZ()).y(), 0);          // and up is up
+  }
+}
+
+TEST(OrbitCamera, DraggingByThePicturesHeightTurnsHalfRound) {
+  OrbitCamera camera = camera_round_a_sphere();
+  const Eigen::Vector3d before = eye_of(camera);
+  camera.orbit({400, 0}, 400);
+  // Half a turn about z: x and y change their signs, z stays.
+  const Eigen::Vector3d after = eye_of(camera);
+  EXPECT_LT((after - Eigen::Vector3d(-before.x(), -before.y(), before.z())).norm(), 1e-9);
+}
+
+TEST(OrbitCamera, PanKeepsThePointUnderTheCursor) {
+  OrbitCamera camera = camera_round_a_sphere();
+  const core::CameraModel lens = OrbitCamera::lens(800, 600);
+  const Eigen::Vector3d centre = camera.object_centre();
+  const auto before = lens.project(camera.camera_from_object() * centre);
+  camera.pan({40, -25}, 600);
+  const auto after = lens.project(camera.camera_from_object() * centre);
+  EXPECT_LT((*after - *before - Eigen::Vector2d(40, -25)).norm(), 1e-6);
+}
+
+TEST(OrbitCamera, ZoomInAndOutCancel) {
+  OrbitCamera camera = camera_round_a_sphere();
+  const Eigen::Vector3d before = eye_of(camera);
+  camera.zoom(3);
+  EXPECT_LT(eye_of(camera).norm(), before.norm());
+  camera.zoom(-3);
+  EXPECT_LT((eye_of(camera) - before).norm(), 1e-9);
+}
+
+TEST(OrbitCamera, FramingShowsAllOfTheObject) {
+  const core::Mesh mesh = core::testing::sphere(8, 16);
+  OrbitCamera camera(mesh, Eigen::Vector3d::UnitX());
+  camera.zoom(8);
+  camera.pan({300, 200}, 600);
+  camera.frame();
+  const core::CameraModel lens = OrbitCamera::lens(600, 600);
+  for (const Eigen::Vector3f& position : mesh.positions) {
+    const auto pixel = lens.project(camera.camera_from_object() * position.cast<double>());
+    ASSERT_TRUE(pixel);
+    EXPECT_GT(pixel->minCoeff(), 0);
+    EXPECT_LT(pixel->maxCoeff(), 599);
+  }
+}
+
+TEST(OrbitCamera, StandsWhereItIsTold) {
+  OrbitCamera camera = camera_round_a_sphere();
+  const Eigen::Vector3d place(2, -3, 1.5);
+  camera.stand_at(place);
+  EXPECT_LT((eye_of(camera) - place).norm(), 1e-9);
+}
+
+TEST(Overlay, ArcsKeepTheirDistance) {
+  const Eigen::Vector3d centre(1, 2, 3);
+  const Eigen::Vector3d from = centre + Eigen::Vector3d(4, 0, 0);
+  const Eigen::Vector3d to = centre + Eigen::Vector3d(0, 0, 4);
+  const auto arc = arc_between(from, to, centre);
+  EXPECT_LT((arc.front() - from).norm(), 1e-9);
+  EXPECT_LT((arc.back() - to).norm(), 1e-9);
+  for (const Eigen::Vector3d& place : arc) EXPECT_NEAR((place - centre).norm(), 4, 1e-9);
+}
+
+TEST(Reasons, EveryRefusalHasWords) {
+  using capture::PoseRejection;
+  std::set<std::string> words;
+  for (const auto rejection :
+       {PoseRejection::no_tags, PoseRejection::too_few_tags, PoseRejection::reprojection,
+        PoseRejection::blur, PoseRejection::no_pose_in_file}) {
+    const std::string text = reason_in_words(name_of(rejection));
+    EXPECT_NE(text, name_of(rejection));
+    words.insert(text);
+  }
+  EXPECT_EQ(words.size(), 5u);
+  EXPECT_EQ(reason_in_words("blur"), "moving too fast: blur");
+}
+
+/// The first frames of the sample recording through the real pipeline, with a live session that
+/// nobody looks at.
+class LivePipeline {
+ public:
+  explicit LivePipeline(int frames)
+      : session_(capture::open_session(tests::sample_session())),
+        mesh_(read_session_mesh(session_)),
+        history_([neighbours = core::vertex_neighbours(mesh_)] {
+          return fitting::make_representation("sh", neighbours, {.iwls = {}, .threads = 1});
+        }),
+        model_(history_),
+        live_(LiveSession::Parts{.model = model_,
+                                 .history = history_,
+                                 .baseline = nullptr,
+                                 .mesh = mesh_,
+                                 .camera = session_.camera,
+                                 .stage_from_object = session_.stage_from_object,
+                                 .limits = {},
+                                 .save =
+                                     [this](const fitting::LightField& light_field) {
+                                       fitting::write_model(folder_.path() / "early.glb", mesh_,
+                                                            light_field);
+                                       return std::string("saved");
+                                     }}),
+        poses_(capture::open_frames(session_, 0, frames),
+               make_pose_estimator(session_, PoseSource::automatic, {})) {}
+
+  /// Runs to the end; `admit` may keep samples out, `on_frame` comes before the session's.
+  void run(const std::function<bool(const core::SampleBatch&, int frame)>& admit,
+           const std::function<void(int frame, LiveSession&)>& on_frame) {
+    int frame = 0;
+    ModelStage stage({.visibility = core::make_ray_visibility(mesh_, 1),
+                      .mesh = mesh_,
+                      .camera = session_.camera,
+                      .stage_from_object = session_.stage_from_object,
+                      .limits = {},
+                      .model = model_,
+                      .baseline = nullptr,
+                      .hold_out = {},
+                      .admit = [&](const core::SampleBatch& batch) {
+                        return admit(batch, frame) && live_.admit(batch);
+                      }});
+    run_pipeline(poses_, stage, false, [&](const TrackedFrame& tracked) {
+      on_frame(frame++, live_);
+      live_.on_frame(tracked, stage.statistics());
+    });
+  }
+
+  [[nodiscard]] std::string model_bytes() {
+    fitting::write_model(folder_.path() / "model.glb", mesh_, history_.light_field());
+    return tests::read_file(folder_.path() / "model.glb");
+  }
+  [[nodiscard]] LiveSession& live() { return live_; }
+  [[nodiscard]] std::filesystem::path folder() const { return folder_.path(); }
+
+ private:
+  tests::TemporaryFolder folder_;
+  capture::Session session_;
+  core::Mesh mesh_;
+  fitting::RewindableRepresentation history_;
+  SharedModel model_;
+  LiveSession live_;
+  PoseStage poses_;
+};
+
+TEST(LiveSession, UndoneFramesHaveNeverBeenSeen) {
+  // At 30 frames a second, .3 s asked for after frame 19 are frames 11 to 19: 9 frames whose time
+  // is later than that of frame 19 less .3 s.
+  LivePipeline undone(30);
+  undone.run([](const core::SampleBatch&, int) { return true; },
+             [](int frame, LiveSession& live) {
+               if (frame == 19) live.request_undo(0.3 - 1e-3);
+             });
+  LivePipeline never_saw(30);
+  never_saw.run([](const core::SampleBatch&, int frame) { return frame < 11 || frame > 19; },
+                [](int, LiveSession&) {});
+  EXPECT_EQ(undone.model_bytes(), never_saw.model_bytes());
+  EXPECT_EQ(undone.live().status().frames_undone, 9);
+  EXPECT_EQ(undone.live().status().frames_fitted, 21);
+  EXPECT_EQ(undone.live().path_since(0, 0).poses.size(), 21u);
+}
+
+TEST(LiveSession, PausedRunsWaitAndSaveMeanwhile) {
+  LivePipeline pipeline(6);
+  std::jthread person;
+  pipeline.run([](const core::SampleBatch&, int) { return true; },
+               [&](int frame, LiveSession& live) {
+                 if (frame != 3) return;
+                 live.set_paused(true);
+                 // Somebody who asks for a copy and then lets it go on, as soon as it is paused.
+                 person = std::jthread([&live] {
+                   while (live.status().phase != LiveStatus::Phase::paused) {
+                     std::this_thread::yield();
+                   }
+                   live.request_save();
+                   while (live.status().note != "saved") std::this_thread::yield();
+                   live.set_paused(false);
+                 });
+               });
+  EXPECT_EQ(pipeline.live().status().frames_fitted, 6);
+  // The copy holds four frames, the model six.
+  EXPECT_NE(tests::read_file(pipeline.folder() / "early.glb"), pipeline.model_bytes());
+}
+
+}  // namespace
+}  // namespace sheen::app

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "app/preview/preview_window.h"
+#include "core/diagnostics/error.h"
+#include "tests/app/display.h"
+#include "tests/app/program.h"
+#include "tests/render/test_scenes.h"
+
+#include <gtest/gtest.h>
+#include <opencv2/core.hpp>
+
+#include <cstdlib>
+
+namespace sheen::app {
+namespace {
+
+constexpr int kPatience = 200;  // redraws until an event must have arrived
+
+class ViewerWindow : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() { display_ = tests::VirtualDisplay::open(1400, 900).release(); }
+  static void TearDownTestSuite() {
+    delete display_;
+    display_ = nullptr;
+  }
+  void SetUp() override {
+    if (display_ == nullptr) GTEST_SKIP() << "Xvfb or xdotool is not installed: no window to test";
+    window_.emplace(PreviewSubject{.title = "test",
+                                   .mesh = mesh_,
+                                   .up = Eigen::Vector3d::UnitZ(),
+                                   .light_field = &light_field_,
+                                   .facts = {{"patches", "many"}},
+                                   .snapshot_folder = folder_.path()});
+    for (int i = 0; i < 3; ++i) window_->redraw(0);
+    display_->act({"mousemove", "500", "300"});  // a window without manager has its pointer's keys
+    window_->redraw(0.05);
+  }
+
+  // Redraws until something is so; false when it never is.
+  template <typename Condition>
+  bool soon(const Condition& condition) {
+    for (int i = 0; i < kPatience; ++i) {
+      if (condition()) return true;
+      if (!window_->redraw(0.02)) return condition();
+    }
+    return condition();
+  }
+  void press(const std::string& key) { display_->act({"key", "--clearmodifiers", key}); }
+
+  // What the window shows, by its own snapshot.
+  cv::Mat picture() {
+    window_->obey(Command::snapshot);
+    window_->redraw(0);
+    return window_->picture().clone();
+  }
+  // Share of the pixels of the view's middle that are not background.
+  double filled() {
+    const cv::Mat all = picture();
+    const cv::Mat middle =
+        all(cv::Rect(all.cols / 4, all.rows / 4, all.cols / 4, all.rows / 2)).clone();
+    cv::Mat bright;
+    cv::reduce(middle.reshape(1, static_cast<int>(middle.total())), bright, 1, cv::REDUCE_MAX);
+    return cv::countNonZero(bright > 40) / static_cast<double>(middle.total());
+  }
+
+  static inline tests::VirtualDisplay* display_ = nullptr;
+  tests::TemporaryFolder folder_;
+  core::Mesh mesh_ = render::testing::torus_knot(0.1f, 120, 24);
+  fitting::mean::MeanLightField light_field_ =
+      render::testing::random_mean(mesh_.positions.size(), 0);
+  std::optional<PreviewWindow> window_;
+};
+
+TEST_F(ViewerWindow, ShowsTheObjectAndKeepsASnapshot) {
+  // The knot's silhouette fills a good part of the middle; an empty view would be all background.
+  EXPECT_GT(filled(), 0.25);
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "sheen-001.png"));
+}
+
+TEST_F(ViewerWindow, LeftDragTurnsWheelComesNearerFFramesAgain) {
+  const auto eye = [&]() -> Eigen::Vector3d {
+    return window_->camera().camera_from_object().inverse().translation();
+  };
+  const Eigen::Vector3d start = eye();
+  // A hand takes its time: the button is down for at least a redraw before the mouse moves.
+  display_->act({"mousedown", "1"});
+  for (int i = 0; i < 3; ++i) window_->redraw(0.02);
+  display_->act({"mousemove_relative", "100", "0"});
+  EXPECT_TRUE(soon([&] { return (eye() - start).norm() > 0.1 * start.norm(); }));
+  display_->act({"mouseup", "1"});
+  for (int i = 0; i < 3; ++i) window_->redraw(0.02);
+  EXPECT_NEAR(eye().norm(), start.norm(), 0.02 * start.norm());
+
+  display_->act({"click", "4"});
+  EXPECT_TRUE(soon([&] { return eye().norm() < 0.9 * start.norm(); }));
+  press("f");
+  EXPECT_TRUE(soon([&] { return std::abs(eye().norm() - start.norm()) < 0.02 * start.norm(); }));
+}
+
+TEST_F(ViewerWindow, NumberKeysChooseLayersThatExist) {
+  press("4");
+  EXPECT_TRUE(soon([&] { return window_->state().layer == Layer::mesh; }));
+  press("2");  // a finished model has no scores
+  press("1");
+  EXPECT_TRUE(soon([&] { return window_->state().layer == Layer::radiance; }));
+}
+
+TEST_F(ViewerWindow, HelpComesAndGoes) {
+  press("h");
+  EXPECT_TRUE(soon([&] { return window_->state().help; }));
+  press("h");
+  EXPECT_TRUE(soon([&] { return !window_->state().help; }));
+}
+
+TEST_F(ViewerWindow, ClosesOnRequest) {
+  press("q");
+  bool open = true;
+  for (int i = 0; open && i < kPatience; ++i) open = window_->redraw(0.02);
+  EXPECT_FALSE(open);
+}
+
+TEST(NoDisplay, IsOneClearError) {
+  setenv("DISPLAY", ":9999", 1);
+  unsetenv("WAYLAND_DISPLAY");
+  const core::Mesh mesh = render::testing::tetrahedron(0.1f);
+  const auto light_field = render::testing::random_mean(mesh.positions.size(), 0);
+  try {
+    PreviewWindow window({.title = "test",
+                          .mesh = mesh,
+                          .up = Eigen::Vector3d::UnitZ(),
+                          .light_field = &light_field});
+    FAIL() << "a window without a display";
+  } catch (const core::Error& error) {
+    EXPECT_EQ(error.kind(), core::Error::Kind::run_failed);
+    EXPECT_NE(std::string(error.what()).find("DISPLAY"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace sheen::app
