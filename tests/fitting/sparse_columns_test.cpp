@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "fitting/iwls/wendland.h"
+#include "fitting/sparse/columns.h"
+#include "tests/fitting/samples_for_tests.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <random>
+
+namespace sheen::fitting::sparse {
+namespace {
+
+using testing::scattered;
+
+constexpr std::size_t kSamples = 43;  // not a multiple of the group: five rows of padding
+constexpr std::size_t kRows = padded(kSamples);
+static_assert(kRows == 48);
+
+/// Scattered directions, far away behind the last.
+struct Directions {
+  Column u{}, v{};
+  explicit Directions(unsigned seed) {
+    const auto all = scattered(kSamples, seed);
+    for (std::size_t row = 0; row < kRows; ++row) {
+      u.row[row] = row < kSamples ? static_cast<float>(all[row].x()) : 8.0f;
+      v.row[row] = row < kSamples ? static_cast<float>(all[row].y()) : 8.0f;
+    }
+  }
+  [[nodiscard]] float distance(std::size_t a, std::size_t b) const {
+    return std::hypot(u.row[a] - u.row[b], v.row[a] - v.row[b]);
+  }
+};
+
+Column random_column(std::mt19937& random) {
+  Column column{};
+  for (std::size_t row = 0; row < kSamples; ++row) {
+    column.row[row] = static_cast<float>(random()) / 4294967296.0f - 0.5f;
+  }
+  return column;
+}
+
+// 48 products of numbers below 1, summed in another order: 48 roundings of 2^-24, rounded up.
+constexpr float kRounding = 1e-5f;
+
+TEST(SparseColumns, WendlandIsTheFunctionOfTheDistance) {
+  const Directions at(1);
+  Column weight{};
+  for (std::size_t row = 0; row < kSamples; ++row) weight.row[row] = 0.5f;
+  Column bump;
+  columns::wendland(at.u, at.v, weight, kRows, 0.2f, -0.1f, 0.7f, bump);
+  for (std::size_t row = 0; row < kSamples; ++row) {
+    const float distance = std::hypot(at.u.row[row] - 0.2f, at.v.row[row] + 0.1f) / 0.7f;
+    EXPECT_NEAR(bump.row[row], 0.5f * iwls::wendland(distance), kRounding);
+  }
+  // Nothing behind the last sample.
+  for (std::size_t row = kSamples; row < kRows; ++row) EXPECT_EQ(bump.row[row], 0.0f);
+}
+
+TEST(SparseColumns, CrowdingCountsNeighboursAndItself) {
+  for (const float reach : {0.001f, 0.1f, 0.6f}) {
+    const Directions at(2);
+    Column crowding;
+    columns::crowding(at.u, at.v, kRows, reach, crowding);
+    for (std::size_t i = 0; i < kSamples; ++i) {
+      float expected = 0;
+      for (std::size_t j = 0; j < kSamples; ++j) {
+        expected += iwls::wendland(at.distance(i, j) / reach);
+      }
+      EXPECT_NEAR(crowding.row[i], expected, 3 * kRounding) << reach;
+    }
+  }
+}
+
+TEST(SparseColumns, ProductsAndDifferencesAreThoseOfPlainLoops) {
+  constexpr unsigned seed = 3;
+  SCOPED_TRACE(seed);
+  std::mt19937 random(seed);
+  std::array<Column, 7> all;  // one group of four and three more
+  for (Column& column : all) column = random_column(random);
+  const Column other = random_column(random);
+  std::array<float, 7> products;
+  columns::dots(all.data(), all.size(), other, kRows, products.data());
+  Column rest = other;
+  columns::subtract(all.data(), all.size(), products.data(), kRows, rest);
+  Column lengths;
+  columns::squared_lengths(all.data(), all.size(), kRows, lengths);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    float expected = 0;
+    for (std::size_t row = 0; row < kSamples; ++row) expected += all[k].row[row] * other.row[row];
+    EXPECT_NEAR(products[k], expected, kRounding);
+    EXPECT_EQ(columns::dot(all[k], other, kRows), products[k]);
+  }
+  for (std::size_t row = 0; row < kSamples; ++row) {
+    float left = other.row[row];
+    float squared = 0;
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      left -= products[k] * all[k].row[row];
+      squared += all[k].row[row] * all[k].row[row];
+    }
+    EXPECT_NEAR(rest.row[row], left, kRounding);
+    EXPECT_NEAR(lengths.row[row], squared, kRounding);
+  }
+}
+
+}  // namespace
+}  // namespace sheen::fitting::sparse
