@@ -110,8 +110,8 @@ EdgePositions EdgeSearch::measure_side(const cv::Mat& grey, const TagView& view,
   return positions;
 }
 
-void EdgeSearch::find_sides(const cv::Mat& grey, const std::vector<TagView>& views,
-                            double spacing_px) {
+void EdgeSearch::find_sides(const cv::Mat& grey, const std::vector<TagView>& views) {
+  constexpr double spacing_px = 2;
   constexpr double first_quarter = 0.25;
   constexpr double last_quarter = 0.75;
   observations_.clear();

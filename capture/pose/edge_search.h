@@ -36,9 +36,8 @@ class EdgeSearch {
   std::optional<double> measure_widths(const cv::Mat& grey, const std::vector<TagView>& views);
 
   /// Fine: lines through the edges, by profiles just longer than the edges are wide. Covered
-  /// stretches do not count, and sides of which less than half is seen are left out. `spacing_px`
-  /// of the profiles.
-  void find_sides(const cv::Mat& grey, const std::vector<TagView>& views, double spacing_px);
+  /// stretches do not count, and sides of which less than half is seen are left out.
+  void find_sides(const cv::Mat& grey, const std::vector<TagView>& views);
 
   /// What the last search found: of `find_sides` two observations a side.
   [[nodiscard]] const std::vector<EdgeObservation>& observations() const { return observations_; }

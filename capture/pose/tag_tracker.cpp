@@ -83,17 +83,16 @@ bool TagTracker::approach(const cv::Mat& grey, Eigen::Isometry3d& camera_from_st
 }
 
 bool TagTracker::align(const cv::Mat& grey, Eigen::Isometry3d& camera_from_stage) {
-  // The first round only centres the profiles.
-  constexpr std::array<double, 4> spacing_px{6, 2, 2, 2};
+  constexpr int max_rounds = 4;
   constexpr double scale_px = 0.1;    // positions of a clean edge scatter by less
   constexpr double settled_px = 0.1;  // profiles are centred: another round would change nothing
-  for (std::size_t round = 0; round < spacing_px.size(); ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     look_again(camera_from_stage);
-    search_.find_sides(grey, views_, spacing_px[round]);
+    search_.find_sides(grey, views_);
     const auto alignment = align_edges(search_.observations(), scale_px, room_);
     if (!alignment) return false;
     camera_from_stage = moved(camera_from_stage, alignment->twist);
-    if (round > 0 && alignment->moved_px < settled_px) return true;
+    if (alignment->moved_px < settled_px) return true;
   }
   return false;
 }
