@@ -20,8 +20,10 @@
 namespace sheen::fitting::sparse {
 namespace {
 
-/// Samples of a view for which one patch may be improved while it is absorbed.
-constexpr std::size_t kSamplesPerStep = 48;
+/// What may be spent on improving patches, per sample of a view; a step costs as many units as the
+/// patch has kept samples, and as many again as kStepOverhead.
+constexpr std::size_t kUnitsPerSample = 1;
+constexpr std::size_t kStepOverhead = 16;
 /// Patches of a view that may be improved in any case.
 constexpr std::size_t kFewestSteps = 32;
 /// Samples from which a patch may be more than one colour.
@@ -178,7 +180,7 @@ void SparseRepresentation::keep_samples(const core::SampleBatch& batch) {
   });
 }
 
-// The most urgent of the view's patches, as many as the budget allows: a count of steps and not a
+// The most urgent of the view's patches, as many as the budget allows: a count of work and not a
 // time, so that results do not depend on the machine. The others keep their debt and ask again when
 // they are seen again, or wait for `finish`.
 void SparseRepresentation::collect_requests(const core::SampleBatch& batch) {
@@ -188,11 +190,19 @@ void SparseRepresentation::collect_requests(const core::SampleBatch& batch) {
     if (!(state.debt > 0.0f) || state.samples.size() < kFewestToImprove) continue;
     requests_.push_back({state.debt, static_cast<std::uint32_t>(i)});
   }
-  const std::size_t budget = std::max(kFewestSteps, batch.size() / kSamplesPerStep);
-  if (requests_.size() <= budget) return;
-  const auto end = requests_.begin() + static_cast<std::ptrdiff_t>(budget);
-  std::nth_element(requests_.begin(), end, requests_.end());
-  requests_.erase(end, requests_.end());
+  // Sort no more of them than can be paid for.
+  std::size_t units = batch.size() * kUnitsPerSample;
+  const std::size_t most = std::max(kFewestSteps, units / (kStepOverhead + kFewestToImprove));
+  const auto end =
+      requests_.begin() + static_cast<std::ptrdiff_t>(std::min(most, requests_.size()));
+  std::partial_sort(requests_.begin(), end, requests_.end());
+  std::size_t granted = 0;
+  for (auto request = requests_.begin(); request != end; ++request, ++granted) {
+    const std::size_t cost = kStepOverhead + states_[batch.patch[request->position]].samples.size();
+    if (cost > units && granted >= kFewestSteps) break;
+    units -= std::min(units, cost);
+  }
+  requests_.resize(granted);
 }
 
 void SparseRepresentation::improve(const core::SampleBatch& batch) {
