@@ -264,7 +264,9 @@ Table ranking_table(const GuidanceStudyOptions& options, const Progress& progres
 }
 
 Table walk_table(const GuidanceStudyOptions& options, const Progress& progress) {
-  Table table{"Frames until views from everywhere reach a PSNR: sweep / following the hint",
+  Table table{fmt::format("Frames until views from everywhere reach a PSNR, of {} at most: sweep / "
+                          "following the hint",
+                          options.frames),
               {"scene", "end of the sweep less 2 dB", "less 1 dB", "end of the sweep",
                "sweep at its end", "hint at that time"},
               {}};

@@ -18,8 +18,8 @@ struct GuidanceStudyOptions {
 /// after a sweep that leaves a gap.
 Table ranking_table(const GuidanceStudyOptions& options, const Progress& progress);
 
-/// Frames until the error on views from everywhere is below some goals, for a plain sweep and for
-/// somebody who follows the hint.
+/// Frames until the error on views from everywhere is below some goals, for the first
+/// `options.frames` of a plain sweep and for somebody who follows the hint as long.
 Table walk_table(const GuidanceStudyOptions& options, const Progress& progress);
 
 }  // namespace sheen::bench

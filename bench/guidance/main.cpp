@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <vector>
+
 using namespace sheen::bench;
 
 int main(int argc, char** argv) {
@@ -10,15 +12,19 @@ int main(int argc, char** argv) {
                      [](const ProgramOptions& options, const Progress& progress) {
                        GuidanceStudyOptions study;
                        study.seed = options.seed;
-                       if (options.quick) {
-                         study.scenes = 1;
-                         study.frames = 200;
-                       }
+                       if (options.quick) study.scenes = 1;
                        const Table ranking = ranking_table(study, progress);
                        write_csv(options.output / "guidance_ranking.csv", ranking);
                        fmt::print("{}\n", markdown(ranking));
-                       const Table walks = walk_table(study, progress);
-                       write_csv(options.output / "guidance_walks.csv", walks);
-                       fmt::print("{}\n", markdown(walks));
+                       // Two sweeps: broken off early, and carried through.
+                       std::vector<int> lengths{200};
+                       if (!options.quick) lengths.push_back(study.frames);
+                       for (const int frames : lengths) {
+                         study.frames = frames;
+                         const Table walks = walk_table(study, progress);
+                         write_csv(options.output / fmt::format("guidance_walks_{}.csv", frames),
+                                   walks);
+                         fmt::print("{}\n", markdown(walks));
+                       }
                      });
 }
