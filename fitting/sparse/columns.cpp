@@ -7,7 +7,8 @@
 #include <cmath>
 #include <cstring>
 
-#if defined(__x86_64__) && defined(__gnu_linux__)
+// Copies are chosen while the program is loaded, when ThreadSanitizer has not started yet.
+#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_THREAD__)
 #define SHEEN_FOR_EVERY_PROCESSOR __attribute__((target_clones("arch=x86-64-v3", "default")))
 #else
 #define SHEEN_FOR_EVERY_PROCESSOR
