@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/preview/camera_view.h"
 
+#include "app/preview/drawn_part.h"
 #include "app/preview/theme.h"
 
 #include <algorithm>
@@ -8,10 +9,6 @@
 
 namespace sheen::app {
 namespace {
-
-ImTextureID texture_id(GLuint name) {
-  return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(name));
-}
 
 /// The same camera with another number of pixels.
 core::CameraModel resized(const core::CameraModel& camera, double scale) {
@@ -31,11 +28,21 @@ void CameraView::take(const cv::Mat& picture, const core::CameraModel& camera,
   picture_.upload(picture);
   camera_ = camera;
   camera_from_object_ = camera_from_object;
+  is_new_ = true;
 }
 
 void CameraView::paint(ObjectPainter& painter, const ViewState& state) {
+  const bool was_painted = is_painted_;
   is_painted_ = state.overlay && camera_from_object_ && scale_ > 0;
   if (!is_painted_) return;
+  const bool as_before = was_painted && !is_new_ && state.layer == painted_layer_ &&
+                         painter.version() == painted_version_ && scale_ == painted_scale_;
+  if (as_before) return;
+  is_new_ = false;
+  painted_layer_ = state.layer;
+  painted_version_ = painter.version();
+  painted_scale_ = scale_;
+  drawn_part_ = drawn_part(painter.bounds(), camera_, *camera_from_object_);
   painter.draw(state.layer, target_, resized(camera_, std::min(scale_, 1.0)), *camera_from_object_);
 }
 
@@ -50,13 +57,12 @@ void CameraView::show(const ImVec2& corner, const ImVec2& size, const ViewState&
   const ImVec2 shown(fit * static_cast<float>(camera_.width_px()),
                      fit * static_cast<float>(camera_.height_px()));
   const ImVec2 from(corner.x + 0.5f * (size.x - shown.x), corner.y + 0.5f * (size.y - shown.y));
-  const ImVec2 to(from.x + shown.x, from.y + shown.y);
-  list.AddImage(texture_id(picture_.name()), from, to);
+  const Eigen::AlignedBox2f whole(Eigen::Vector2f::Zero(), Eigen::Vector2f::Ones());
+  add_part(list, picture_.name(), from, shown, whole);
   if (!is_painted_) return;
   // Radiance covers the object so that the two can be compared; scores let it shine through.
   const float strength = state.layer == Layer::radiance ? 1.0f : 0.75f;
-  list.AddImage(texture_id(target_.colour_texture()), from, to, {0, 0}, {1, 1},
-                ImGui::GetColorU32({1, 1, 1, strength}));
+  add_part(list, target_.colour_texture(), from, shown, drawn_part_, strength);
 }
 
 }  // namespace sheen::app

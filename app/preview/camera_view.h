@@ -21,6 +21,7 @@ class CameraView {
   void take(const cv::Mat& picture, const core::CameraModel& camera,
             const std::optional<Eigen::Isometry3d>& camera_from_object);
 
+  /// Draws the object over the picture, unless nothing has changed since it last did.
   void paint(ObjectPainter& painter, const ViewState& state);
   /// Fills a rectangle of the present ImGui window, the picture as large as fits.
   void show(const ImVec2& corner, const ImVec2& size, const ViewState& state);
@@ -32,6 +33,11 @@ class CameraView {
   double scale_ = 0;  ///< pixels of the screen per pixel of the picture; 0: not shown yet
   std::optional<Eigen::Isometry3d> camera_from_object_;
   bool is_painted_ = false;
+  bool is_new_ = false;  ///< picture and pose, since the object was last drawn over them
+  Layer painted_layer_ = Layer::mesh;
+  std::size_t painted_version_ = 0;
+  double painted_scale_ = 0;
+  Eigen::AlignedBox2f drawn_part_;
 };
 
 }  // namespace sheen::app

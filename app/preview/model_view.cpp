@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/preview/model_view.h"
 
+#include "app/preview/drawn_part.h"
 #include "app/preview/theme.h"
 
 #include <algorithm>
@@ -12,10 +13,6 @@ namespace {
 
 ImU32 colour_of(const ImVec4& colour, float strength) {
   return ImGui::GetColorU32({colour.x, colour.y, colour.z, strength});
-}
-
-ImTextureID texture_id(GLuint name) {
-  return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(name));
 }
 
 /// Cameras far enough apart to be told from each other.
@@ -44,7 +41,7 @@ ModelView::ModelView(const render::gl::Functions& gl, const core::Mesh& mesh,
       caster_(mesh),
       target_(gl, true) {}
 
-void ModelView::paint(ObjectPainter& painter, Layer layer) {
+void ModelView::paint(ObjectPainter& painter, Layer layer, bool hastily) {
   const Eigen::Isometry3d pose = camera_.camera_from_object();
   const bool as_before = layer == painted_layer_ && painter.version() == painted_version_ &&
                          pose.matrix() == painted_from_.matrix() &&
@@ -56,9 +53,11 @@ void ModelView::paint(ObjectPainter& painter, Layer layer) {
   painted_version_ = painter.version();
   painted_from_ = pose;
   painted_lens_ = lens_;
-  const int density = is_fine_ ? 2 : 1;
-  painter.draw(layer, target_,
-               OrbitCamera::lens(density * lens_.width_px(), density * lens_.height_px()), pose);
+  drawn_part_ = drawn_part(painter.bounds(), lens_, pose);
+  const double density = is_fine_ ? 2 : hastily ? 0.5 : 1;
+  const auto dense = [&](int size_px) { return static_cast<int>(std::ceil(density * size_px)); };
+  painter.draw(layer, target_, OrbitCamera::lens(dense(lens_.width_px()), dense(lens_.height_px())),
+               pose);
 }
 
 void ModelView::show(const ImVec2& corner, const ImVec2& size, const ViewState& state,
@@ -70,9 +69,10 @@ void ModelView::show(const ImVec2& corner, const ImVec2& size, const ViewState& 
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 end(corner.x + size.x, corner.y + size.y);
   list.PushClipRect(corner, end, true);
-  list.AddRectFilled(corner, end, ImGui::GetColorU32(theme::kBackground));
+  // The window is cleared to the background already.
+  if (!is_large) list.AddRectFilled(corner, end, ImGui::GetColorU32(theme::kBackground));
   if (target_.colour_texture() != 0) {
-    list.AddImage(texture_id(target_.colour_texture()), corner, end);
+    add_part(list, target_.colour_texture(), corner, size, drawn_part_);
   }
   const ImVec2 scale(size.x / static_cast<float>(lens_.width_px()),
                      size.y / static_cast<float>(lens_.height_px()));

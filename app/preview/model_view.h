@@ -32,8 +32,9 @@ class ModelView {
             bool with_cameras);
 
   /// Draws into the picture that `show` puts on the screen; needs the light field to keep still if
-  /// the painter says so. What has not changed is drawn once more, finer, and then no more.
-  void paint(ObjectPainter& painter, Layer layer);
+  /// the painter says so. What has not changed is drawn once more, finer, and then no more;
+  /// `hastily` draws what has changed with a quarter of the pixels.
+  void paint(ObjectPainter& painter, Layer layer, bool hastily);
   /// Whether the next `paint` would draw finer.
   [[nodiscard]] bool is_coarse() const { return !is_fine_; }
   /// Fills a rectangle of the present ImGui window (pixels of the window) and takes the mouse in.
@@ -61,6 +62,7 @@ class ModelView {
   Eigen::Isometry3d painted_from_ = Eigen::Isometry3d::Identity();
   Layer painted_layer_ = Layer::mesh;
   std::size_t painted_version_ = 0;
+  Eigen::AlignedBox2f drawn_part_;
   bool is_fine_ = false;
   std::optional<std::uint32_t> under_cursor_;
 };

@@ -41,7 +41,9 @@ ObjectPainter::ObjectPainter(const render::gl::Functions& gl, const core::Mesh& 
       mesh_(mesh),
       scores_{std::vector<float>(mesh.positions.size(), 1.0f),
               std::vector<float>(mesh.positions.size(), 0.0f)},
-      is_changed_(mesh.positions.size(), 0) {}
+      is_changed_(mesh.positions.size(), 0) {
+  for (const Eigen::Vector3f& position : mesh.positions) bounds_.extend(position.cast<double>());
+}
 
 void ObjectPainter::show(const fitting::LightField& light_field) {
   layers_[slot_of(Layer::radiance)] = std::make_unique<render::SurfaceLayer>(

@@ -7,6 +7,8 @@
 #include "fitting/representation.h"
 #include "render/preview/surface_layer.h"
 
+#include <Eigen/Geometry>
+
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -43,6 +45,9 @@ class ObjectPainter {
 
   void set_scores(PatchScores scores);
 
+  /// Of the mesh, object frame.
+  [[nodiscard]] const Eigen::AlignedBox3d& bounds() const { return bounds_; }
+
   /// Grows with everything that makes an earlier drawing out of date.
   [[nodiscard]] std::size_t version() const { return version_; }
 
@@ -56,6 +61,7 @@ class ObjectPainter {
 
   const render::gl::Functions& gl_;
   const core::Mesh& mesh_;
+  Eigen::AlignedBox3d bounds_;
   PatchScores scores_;
   std::array<std::unique_ptr<render::SurfaceLayer>, kLayers.size()> layers_;  ///< made at need
   std::vector<std::uint8_t> is_changed_;

@@ -21,7 +21,6 @@ constexpr float kMargin = 14;         // in units of the content scale
 constexpr double kUndo_s = 5;
 constexpr double kFineAfter_s = 0.15;  // stillness after which the model is drawn finer
 constexpr std::size_t kBytesPerRedraw = 512 * 1024;
-constexpr std::size_t kRateRedraws = 30;
 
 constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
                                     ImGuiWindowFlags_NoSavedSettings |
@@ -45,6 +44,7 @@ PreviewWindow::PreviewWindow(const PreviewSubject& subject)
 bool PreviewWindow::redraw(double longest_wait_s) {
   const double coarse_wait_s = model_view_.is_coarse() ? kFineAfter_s : longest_wait_s;
   window_.begin_redraw(painter_.has_changes() ? 0 : std::min(coarse_wait_s, longest_wait_s));
+  pace_.begin();
   for (const KeyPress& press : window_.key_presses()) {
     if (const auto command = command_of(press)) obey(*command);
   }
@@ -54,7 +54,7 @@ bool PreviewWindow::redraw(double longest_wait_s) {
   window_.draw();
   if (std::exchange(snapshot_wanted_, false)) save_snapshot();
   window_.show();
-  measure_rate();
+  pace_.end();
   return !window_.wants_to_close();
 }
 
@@ -92,7 +92,7 @@ void PreviewWindow::look_at_model() {
       painter_.note_changes(changes);
     }
     painter_.send_changes(kBytesPerRedraw);
-    if (painter_.draws_from_model()) model_view_.paint(painter_, state_.layer);
+    if (painter_.draws_from_model()) model_view_.paint(painter_, state_.layer, pace_.is_slow());
   });
 }
 
@@ -102,7 +102,7 @@ void PreviewWindow::paint() {
     look_at_model();
     return;
   }
-  model_view_.paint(painter_, state_.layer);
+  model_view_.paint(painter_, state_.layer, pace_.is_slow());
   if (subject_.live != nullptr) camera_view_.paint(painter_, state_);
 }
 
@@ -123,7 +123,8 @@ void PreviewWindow::show_views(const ImVec2& size) {
   ImGui::SetNextWindowPos({0, 0});
   ImGui::SetNextWindowSize(size);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{0, 0});
-  ImGui::Begin("views", nullptr, kFixed | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::Begin("views", nullptr,
+               kFixed | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground);
   ImGui::PopStyleVar();
   const bool has_camera = subject_.live != nullptr;
   const bool camera_is_large = has_camera && state_.camera_is_large;
@@ -160,10 +161,7 @@ void PreviewWindow::show_panel(const ImVec2& corner, const ImVec2& size) {
   if (!note_.empty()) status_.note = note_;
   contents.live = subject_.live != nullptr ? &status_ : nullptr;
   contents.facts = subject_.facts;
-  if (redraws_.size() > 1) {
-    const std::chrono::duration<double> span = redraws_.back() - redraws_.front();
-    contents.redraws_per_s = static_cast<double>(redraws_.size() - 1) / span.count();
-  }
+  contents.redraws_per_s = pace_.redraws_per_s().value_or(0);
   for (const Command command : show_side_panel(contents, state_, window_.fonts())) obey(command);
   ImGui::End();
 }
@@ -261,11 +259,6 @@ void PreviewWindow::save_snapshot() {
   } catch (const core::Error& error) {
     note_ = error.what();
   }
-}
-
-void PreviewWindow::measure_rate() {
-  redraws_.push_back(std::chrono::steady_clock::now());
-  if (redraws_.size() > kRateRedraws) redraws_.pop_front();
 }
 
 }  // namespace sheen::app

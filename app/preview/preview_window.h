@@ -5,14 +5,13 @@
 #include "app/preview/live_session.h"
 #include "app/preview/model_view.h"
 #include "app/preview/object_painter.h"
+#include "app/preview/redraw_pace.h"
 #include "app/preview/side_panel.h"
 #include "app/preview/window.h"
 #include "fitting/light_field.h"
 
 #include <Eigen/Core>
 
-#include <chrono>
-#include <deque>
 #include <filesystem>
 #include <string>
 
@@ -60,7 +59,6 @@ class PreviewWindow {
   [[nodiscard]] std::optional<PatchNews> patch_news();
   void obey_session(Command command);
   void save_snapshot();
-  void measure_rate();
 
   PreviewSubject subject_;
   Window window_;
@@ -79,7 +77,7 @@ class PreviewWindow {
   int snapshots_ = 0;
   std::string note_;
   cv::Mat picture_;
-  std::deque<std::chrono::steady_clock::time_point> redraws_;
+  RedrawPace pace_;
 };
 
 }  // namespace sheen::app

@@ -2,10 +2,12 @@
 #include "app/pipeline/model_stage.h"
 #include "app/pipeline/pipeline.h"
 #include "app/pipeline/session_parts.h"
+#include "app/preview/drawn_part.h"
 #include "app/preview/live_session.h"
 #include "app/preview/orbit_camera.h"
 #include "app/preview/overlay.h"
 #include "app/preview/reasons.h"
+#include "app/preview/redraw_pace.h"
 #include "capture/session/session.h"
 #include "core/mesh/neighbours.h"
 #include "core/visibility/ray_visibility.h"
@@ -90,6 +92,74 @@ TEST(OrbitCamera, StandsWhereItIsTold) {
   const Eigen::Vector3d place(2, -3, 1.5);
   camera.stand_at(place);
   EXPECT_LT((eye_of(camera) - place).norm(), 1e-9);
+}
+
+TEST(DrawnPart, HoldsWhateverIsInTheBox) {
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(-0.1, -0.05, -0.02),
+                                Eigen::Vector3d(0.1, 0.05, 0.08));
+  OrbitCamera camera(
+      {{{-0.1f, -0.05f, -0.02f}, {0.1f, 0.05f, 0.08f}, {0.1f, -0.05f, 0.0f}},
+       {Eigen::Vector3f::UnitZ(), Eigen::Vector3f::UnitZ(), Eigen::Vector3f::UnitZ()},
+       {{0, 1, 2}}},
+      Eigen::Vector3d::UnitZ());
+  const core::CameraModel lens = OrbitCamera::lens(800, 500);
+  for (int turn = 0; turn < 12; ++turn) {
+    camera.orbit({60, turn % 3 == 0 ? 40.0 : -30.0}, 500);
+    const Eigen::Isometry3d pose = camera.camera_from_object();
+    const Eigen::AlignedBox2f part = drawn_part(box, lens, pose);
+    EXPECT_LT(part.volume(), 0.9f);  // a framed object leaves room round it
+    for (int i = 0; i < 125; ++i) {
+      const Eigen::Vector3d share(0.25 * (i % 5), 0.25 * (i / 5 % 5), 0.25 * (i / 25));
+      const auto pixel = lens.project(pose * (box.min() + share.cwiseProduct(box.sizes())));
+      ASSERT_TRUE(pixel);
+      const Eigen::Vector2f place((static_cast<float>(pixel->x()) + 0.5f) / 800,
+                                  (static_cast<float>(pixel->y()) + 0.5f) / 500);
+      EXPECT_TRUE(part.contains(place.cwiseMax(0).cwiseMin(1))) << place.transpose();
+    }
+  }
+}
+
+TEST(DrawnPart, IsEverythingWhenTheBoxReachesBehindTheCamera) {
+  const Eigen::AlignedBox3d box(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1));
+  const auto part = drawn_part(box, OrbitCamera::lens(80, 50), Eigen::Isometry3d::Identity());
+  EXPECT_EQ(part.min(), Eigen::Vector2f::Zero());
+  EXPECT_EQ(part.max(), Eigen::Vector2f::Ones());
+}
+
+/// A clock that redraws tell how long they take.
+class PaceOfRedraws : public ::testing::Test {
+ protected:
+  void redraw(int times, int work_ms, int rest_ms) {
+    for (int i = 0; i < times; ++i) {
+      pace_.begin(now_);
+      pace_.end(now_ += std::chrono::milliseconds(work_ms));
+      now_ += std::chrono::milliseconds(rest_ms);
+    }
+  }
+  RedrawPace pace_;
+  RedrawPace::Clock::time_point now_{};
+};
+
+TEST_F(PaceOfRedraws, CountsRedrawsASecond) {
+  EXPECT_FALSE(pace_.redraws_per_s());
+  redraw(50, 10, 40);  // 50 ms from one to the next
+  EXPECT_NEAR(*pace_.redraws_per_s(), 20, 1e-9);
+}
+
+TEST_F(PaceOfRedraws, RestIsNotWork) {
+  redraw(50, 5, 200);
+  EXPECT_FALSE(pace_.is_slow());
+}
+
+TEST_F(PaceOfRedraws, StaysSlowUntilThereIsRoomForFourTimesThePixels) {
+  redraw(50, 40, 0);  // 25 a second
+  EXPECT_TRUE(pace_.is_slow());
+  redraw(50, 15, 0);  // with a quarter of the pixels; all of them would take up to 60 ms
+  EXPECT_TRUE(pace_.is_slow());
+  redraw(50, 5, 0);
+  EXPECT_FALSE(pace_.is_slow());
+  redraw(50, 15, 0);  // with all of them
+  EXPECT_FALSE(pace_.is_slow());
 }
 
 TEST(Overlay, ArcsKeepTheirDistance) {
