@@ -45,10 +45,14 @@ void write_stage_from_object(const std::filesystem::path& session_file,
 }
 
 std::filesystem::path keep_before(const std::filesystem::path& file, const std::string& step) {
+  const std::string name = file.stem().string() + ".before-" + step;
   auto copy = file;
-  copy.replace_filename(file.stem().string() + ".before-" + step + file.extension().string());
-  core::StagedOutput staged(copy);
+  copy.replace_filename(name + file.extension().string());
   std::error_code failure;
+  for (int count = 2; std::filesystem::exists(copy, failure); ++count) {
+    copy.replace_filename(name + "-" + std::to_string(count) + file.extension().string());
+  }
+  core::StagedOutput staged(copy);
   std::filesystem::copy_file(file, staged.path(), failure);
   if (failure) {
     throw core::Error(core::Error::Kind::run_failed, copy, "cannot be written",

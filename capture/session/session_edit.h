@@ -15,7 +15,8 @@ void write_stage_from_object(const std::filesystem::path& session_file,
                              const Eigen::Isometry3d& stage_from_object);
 
 /// Copies a file beside itself as NAME.before-STEP.EXT, so that a step that replaces it can be
-/// taken back; an earlier copy is replaced. Returns its path. Throws core::Error.
+/// taken back; where that exists, as NAME.before-STEP-2.EXT and so on: the first one stays. Returns
+/// its path. Throws core::Error.
 std::filesystem::path keep_before(const std::filesystem::path& file, const std::string& step);
 
 }  // namespace sheen::capture

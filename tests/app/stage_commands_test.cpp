@@ -127,6 +127,18 @@ TEST_F(StageCommands, RegisterFindsTheObjectAndKeepsTheOldPlace) {
   EXPECT_TRUE(std::filesystem::is_regular_file(folder_.path() / "outline.png"));
 }
 
+TEST_F(StageCommands, WhatWasKeptFirstStays) {
+  const auto board = session_ / "board.yaml";
+  const std::string first = read_file(board);
+  EXPECT_EQ(capture::keep_before(board, "survey"), session_ / "board.before-survey.yaml");
+  write_file(board, "second");
+  EXPECT_EQ(capture::keep_before(board, "survey"), session_ / "board.before-survey-2.yaml");
+  write_file(board, "third");
+  EXPECT_EQ(capture::keep_before(board, "survey"), session_ / "board.before-survey-3.yaml");
+  EXPECT_EQ(read_file(session_ / "board.before-survey.yaml"), first);
+  EXPECT_EQ(read_file(session_ / "board.before-survey-2.yaml"), "second");
+}
+
 TEST_F(StageCommands, RegisterRefusesAHopelessStart) {
   const Eigen::Isometry3d truth = capture::open_session(session_).stage_from_object;
   capture::write_stage_from_object(session_ / "session.json", session_ / "session.json",
