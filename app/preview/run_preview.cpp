@@ -37,10 +37,11 @@ void run_preview(const PreviewSubject& subject, const std::function<void()>& wor
                  const std::function<void()>& on_closed) {
   std::exception_ptr failure;
   {
-    PreviewWindow window(subject);
     std::atomic<bool> failed{false};
     std::atomic<bool> done{false};
-    std::jthread worker([&] {
+    std::jthread worker;  // outlives the window, which would stand there frozen otherwise
+    PreviewWindow window(subject);
+    worker = std::jthread([&] {
       try {
         work();
       } catch (...) {
