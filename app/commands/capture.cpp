@@ -4,6 +4,9 @@
 #include "app/commands/camera_list.h"
 #include "app/commands/replay.h"
 #include "app/interrupt.h"
+#include "app/pipeline/session_parts.h"
+#include "app/preview/window.h"
+#include "capture/pose/board.h"
 #include "capture/session/camera_recording.h"
 #include "capture/session/session.h"
 #include "core/diagnostics/error.h"
@@ -27,6 +30,16 @@ void check_size(const capture::CameraDescription& camera, const core::CameraMode
                                     size_text(camera.width_px, camera.height_px),
                                     size_text(model.width_px(), model.height_px())),
                         "choose that --size or calibrate at this one");
+}
+
+/// Whatever may be wrong shows before the folder is made: a failed start would leave it behind, and
+/// the next one would have to go elsewhere.
+void check_before_recording(const CaptureOptions& options, const capture::SessionSetup& setup,
+                            const CommandContext& context) {
+  static_cast<void>(capture::read_board(setup.board));
+  static_cast<void>(read_object_mesh(setup.mesh));
+  context.check_outputs({options.fit.output});
+  if (options.fit.preview) Window::check_display();
 }
 
 capture::RecordingTerms terms_of(const CaptureOptions& options, const CommandContext& context,
@@ -89,9 +102,9 @@ void capture_session(std::unique_ptr<capture::Camera> camera, const CaptureOptio
   const capture::SessionSetup setup = read_setup(options);
   const capture::CameraDescription description = camera->description();
   check_size(description, setup.camera);
+  check_before_recording(options, setup, context);
   capture::SessionRecorder recorder(options.session, setup, description.fps);
   const capture::Session session = capture::open_session(options.session);
-  context.check_outputs({fit.output});
   const FinishOnInterrupt finishing;
   std::atomic<bool> window_closed{false};
   capture::CameraRecording recording(std::move(camera), recorder,

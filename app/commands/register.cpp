@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kPictureViews = 6;
 constexpr std::size_t kTrialViews = 10;
-constexpr int kTurns = 12;  // first guesses of an upright object about z
+constexpr int kTurns = 12;             // first guesses of an upright object about z
 constexpr double kTrialSearch = 0.35;  // of the radius: half-way to the next guess, and more
 
 struct RegisterOptions {
@@ -183,7 +183,7 @@ void run_register(const RegisterOptions& options, const CommandContext& context)
   }
   const capture::Session session = capture::open_session(options.session.folder);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
-  const core::Mesh mesh = read_session_mesh(session);
+  const core::Mesh mesh = read_object_mesh(session.mesh);
 
   // Guess, then align.
   Eigen::Isometry3d guess = first_guess(options, session, mesh, context);

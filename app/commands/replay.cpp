@@ -128,7 +128,7 @@ std::optional<capture::BoardRefinement> refine_board(const capture::Session& ses
 /// The session's mesh, refined to the pictures' resolution when patches are texels.
 core::Mesh read_patch_mesh(const capture::Session& session, const ReplayOptions& options,
                            const capture::Board* board) {
-  core::Mesh mesh = read_session_mesh(session);
+  core::Mesh mesh = read_object_mesh(session.mesh);
   if (options.patches == "vertex") return mesh;
   const auto poses =
       make_pose_estimator(session, options.session.pose_source, options.session.gate, board);

@@ -58,7 +58,7 @@ Observations observe_session(const SessionOptions& options, int threads,
   // Open what may be wrong.
   Observations observations;
   observations.session = capture::open_session(options.folder);
-  observations.mesh = read_session_mesh(observations.session);
+  observations.mesh = read_object_mesh(observations.session.mesh);
   observations.neighbours = core::vertex_neighbours(observations.mesh);
   const auto own_views = options.folder / "held_out";
   observations.has_own_held_out = std::filesystem::exists(own_views / "session.json");

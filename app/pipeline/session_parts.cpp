@@ -41,13 +41,13 @@ std::unique_ptr<capture::PoseEstimator> make_pose_estimator(const capture::Sessi
       board != nullptr ? *board : capture::read_board(*session.board), session.camera, gate);
 }
 
-core::Mesh read_session_mesh(const capture::Session& session) {
-  core::Mesh mesh = core::read_mesh(session.mesh);
+core::Mesh read_object_mesh(const std::filesystem::path& path) {
+  core::Mesh mesh = core::read_mesh(path);
   Eigen::AlignedBox3f bounds;
   for (const auto& position : mesh.positions) bounds.extend(position);
   const float size_m = bounds.diagonal().norm();
   if (size_m > kLargestObject_m || size_m < kSmallestObject_m) {
-    throw core::bad_input(session.mesh,
+    throw core::bad_input(path,
                           fmt::format("is {:.4g} m across, its unit must be the metre", size_m),
                           size_m > kLargestObject_m ? "scale it, by 0.001 if it is in millimetres"
                                                     : "scale it to its true size");

@@ -22,8 +22,8 @@ std::unique_ptr<capture::PoseEstimator> make_pose_estimator(const capture::Sessi
                                                             const capture::PoseGate& gate,
                                                             const capture::Board* board = nullptr);
 
-/// The session's mesh, checked to be of a size that a handheld camera can walk round: throws
-/// core::Error (bad_input) for meshes in millimetres and the like.
-core::Mesh read_session_mesh(const capture::Session& session);
+/// A mesh, checked to be of a size that a handheld camera can walk round: throws core::Error
+/// (bad_input) for meshes in millimetres and the like.
+core::Mesh read_object_mesh(const std::filesystem::path& path);
 
 }  // namespace sheen::app

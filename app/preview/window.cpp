@@ -96,6 +96,10 @@ struct Window::Impl {
 Window::Window(const std::string& title, int width, int height)
     : impl_(std::make_unique<Impl>(title, width, height)), gl_(render::gl::load_functions(*this)) {}
 
+void Window::check_display() {
+  const Library library;
+}
+
 Window::~Window() {
   make_current();
 }

@@ -32,6 +32,9 @@ class Window final : public render::Context {
   Window(Window&&) = delete;
   Window& operator=(Window&&) = delete;
 
+  /// Throws as the constructor does where there is no display, and leaves no trace.
+  static void check_display();
+
   void make_current() override;
   [[nodiscard]] Function resolve(const char* name) const override;
 

@@ -154,6 +154,16 @@ TEST_F(LiveCapture, RefusesWhatDoesNotFitTogether) {
   options_.stage_from_object = std::vector<double>(16, 0.5);
   expect_refused("--T-stage-object");
   options_.stage_from_object.clear();
+  options_.mesh = sample_session() / "camera.yaml";
+  expect_refused("camera.yaml");
+  options_.mesh.clear();
+  options_.board = sample_session() / "object.ply";
+  expect_refused("object.ply");
+  options_.board.clear();
+  options_.fit.output = sample_session() / "board.yaml" / "model.glb";
+  expect_refused("board.yaml");
+  options_.fit.output.clear();
+  EXPECT_FALSE(std::filesystem::exists(options_.session));  // nothing stands in the next one's way
   options_.like.clear();
   expect_refused("--camera");
   options_.like = sample_session();

@@ -192,7 +192,7 @@ class LivePipeline {
  public:
   explicit LivePipeline(int frames)
       : session_(capture::open_session(tests::sample_session())),
-        mesh_(read_session_mesh(session_)),
+        mesh_(read_object_mesh(session_.mesh)),
         history_([neighbours = core::vertex_neighbours(mesh_)] {
           return fitting::make_representation("sh", neighbours, {.iwls = {}, .threads = 1});
         }),
