@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <exception>
+#include <string>
 #include <utility>
 
 namespace sheen::capture {
@@ -81,11 +83,6 @@ std::unique_ptr<FrameSource> CameraRecording::frames() {
   return std::make_unique<LiveFrames>(*this);
 }
 
-LivePicture CameraRecording::latest() const {
-  const std::lock_guard lock(mutex_);
-  return latest_;
-}
-
 RecordingStatus CameraRecording::status() const {
   const std::lock_guard lock(mutex_);
   RecordingStatus status = status_;
@@ -102,6 +99,11 @@ void CameraRecording::record(const std::stop_token& stop) {
   } catch (const core::Error& error) {
     const std::lock_guard lock(mutex_);
     status_.camera_fault = error;
+  } catch (const std::exception& error) {  // no memory, for instance
+    const std::lock_guard lock(mutex_);
+    status_.camera_fault = core::Error(core::Error::Kind::run_failed, status_.description.device,
+                                       std::string("recording has stopped: ") + error.what(),
+                                       "what was recorded is kept");
   }
   recorder_.close();
   {
@@ -114,10 +116,9 @@ void CameraRecording::record(const std::stop_token& stop) {
 
 bool CameraRecording::is_over() const {
   if (terms_.is_enough && terms_.is_enough()) return true;
+  if (terms_.seconds && first_s_ && stamp_seconds(last_us_) >= *terms_.seconds) return true;
   const std::lock_guard lock(mutex_);
-  const bool has_all = terms_.frames && status_.taken >= *terms_.frames;
-  return has_all ||
-         (terms_.seconds && latest_.jpeg && stamp_seconds(latest_.time_us) >= *terms_.seconds);
+  return terms_.frames && status_.taken >= *terms_.frames;
 }
 
 void CameraRecording::take(const CameraBuffer& buffer) {
@@ -140,7 +141,6 @@ void CameraRecording::take(const CameraBuffer& buffer) {
   const std::lock_guard lock(mutex_);
   ++status_.taken;
   status_.camera = camera_->counts();
-  latest_ = picture;
   if (has_fault && !is_recorded) {
     unrecorded_.push_back(picture);
     if (unrecorded_.size() > kMostUnrecorded) unrecorded_.pop_front();

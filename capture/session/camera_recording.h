@@ -59,9 +59,6 @@ class CameraRecording {
   /// dropped. `next` waits for frames. To be destroyed before the recording.
   [[nodiscard]] std::unique_ptr<FrameSource> frames();
 
-  /// The newest picture; no picture before the first.
-  [[nodiscard]] LivePicture latest() const;
-
   [[nodiscard]] RecordingStatus status() const;
 
  private:
@@ -84,7 +81,6 @@ class CameraRecording {
   mutable std::mutex mutex_;
   std::condition_variable has_unrecorded_;
   RecordingStatus status_;
-  LivePicture latest_;
   std::deque<LivePicture> unrecorded_;
   std::jthread thread_;  ///< last: it uses all of the above
 };
