@@ -2,7 +2,6 @@
 #include "app/commands/board.h"
 
 #include "capture/board_print/board_pdf.h"
-#include "core/files/staged_output.h"
 
 #include <fmt/format.h>
 
@@ -32,7 +31,7 @@ void run_board(const BoardOptions& options, const CommandContext& context) {
   const capture::BoardPlan plan = capture::plan_board(options.design);
   auto yaml = options.output;
   yaml.replace_extension(".yaml");
-  core::check_writable(options.output);
+  context.check_outputs({options.output, yaml});
   capture::write_board_pdf(options.output, plan);
   capture::write_board(yaml, capture::board_as_printed(plan.board, options.measured_mm));
 

@@ -9,7 +9,6 @@
 #include "capture/calibration/coverage_picture.h"
 #include "capture/source/v4l2_camera.h"
 #include "core/diagnostics/error.h"
-#include "core/files/staged_output.h"
 #include "core/image/write_image.h"
 
 #include <fmt/format.h>
@@ -180,9 +179,7 @@ nlohmann::ordered_json to_json(const capture::Calibration& found, int frames) {
 }
 
 void run_calibrate(const CalibrateOptions& options, const CommandContext& context) {
-  for (const auto& path : {options.output, options.picture, context.report_path}) {
-    if (!path.empty()) core::check_writable(path);
-  }
+  context.check_outputs({options.output, options.picture});
   const auto finder = capture::make_target_finder(target_of(options));
   const Candidates candidates = find_candidates(options, *finder, context);
   const auto found = calibrate(options, *finder, candidates);

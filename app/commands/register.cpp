@@ -9,7 +9,6 @@
 #include "capture/registration/view_choice.h"
 #include "capture/session/session_edit.h"
 #include "core/diagnostics/error.h"
-#include "core/files/staged_output.h"
 #include "core/image/write_image.h"
 
 #include <fmt/format.h>
@@ -178,9 +177,7 @@ std::string save(const std::filesystem::path& session_file, const std::filesyste
 void run_register(const RegisterOptions& options, const CommandContext& context) {
   const auto session_file = options.session.folder / "session.json";
   const auto output = options.output.empty() ? session_file : options.output;
-  for (const auto& path : {output, options.picture, context.report_path}) {
-    if (!path.empty()) core::check_writable(path);
-  }
+  context.check_outputs({output, options.picture});
   const capture::Session session = capture::open_session(options.session.folder);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
   const core::Mesh mesh = read_object_mesh(session.mesh);

@@ -6,7 +6,6 @@
 #include "capture/pose/board_change.h"
 #include "capture/session/session_edit.h"
 #include "core/diagnostics/error.h"
-#include "core/files/staged_output.h"
 #include "core/image/write_image.h"
 
 #include <fmt/format.h>
@@ -109,10 +108,7 @@ std::string write_keeping(const std::filesystem::path& path, const Write& write)
 
 void run_survey(SurveyOptions options, const CommandContext& context) {
   if (options.output.empty()) options.output = options.session / "board.surveyed.yaml";
-  for (const auto& path :
-       {options.output, options.camera_output, options.picture, context.report_path}) {
-    if (!path.empty()) core::check_writable(path);
-  }
+  context.check_outputs({options.output, options.camera_output, options.picture});
   const capture::Session session = capture::open_session(options.session);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
   const auto lens =

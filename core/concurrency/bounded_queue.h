@@ -33,13 +33,12 @@ class BoundedQueue {
   [[nodiscard]] std::optional<T> pop() {
     std::unique_lock lock(mutex_);
     has_items_.wait(lock, [this] { return closed_ || !items_.empty(); });
-    return take(lock);
-  }
-
-  /// Nothing when no item is there right now.
-  [[nodiscard]] std::optional<T> try_pop() {
-    std::unique_lock lock(mutex_);
-    return take(lock);
+    if (items_.empty()) return std::nullopt;
+    std::optional<T> item(std::move(items_.front()));
+    items_.pop_front();
+    lock.unlock();
+    has_room_.notify_one();
+    return item;
   }
 
   /// Wakes everybody who waits; may be called more than once.
@@ -52,23 +51,9 @@ class BoundedQueue {
     has_room_.notify_all();
   }
 
-  [[nodiscard]] bool is_closed() const {
-    const std::lock_guard lock(mutex_);
-    return closed_;
-  }
-
  private:
-  std::optional<T> take(std::unique_lock<std::mutex>& lock) {
-    if (items_.empty()) return std::nullopt;
-    std::optional<T> item(std::move(items_.front()));
-    items_.pop_front();
-    lock.unlock();
-    has_room_.notify_one();
-    return item;
-  }
-
   const std::size_t capacity_;
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
   std::condition_variable has_items_;
   std::condition_variable has_room_;
   std::deque<T> items_;
