@@ -12,6 +12,7 @@
 #include "app/pipeline/session_board.h"
 #include "app/preview/run_preview.h"
 #include "capture/pose/trajectory.h"
+#include "capture/source/paced_source.h"
 #include "core/diagnostics/cpu_clock.h"
 #include "core/diagnostics/error.h"
 #include "core/mesh/neighbours.h"
@@ -248,6 +249,7 @@ void run_replay(const ReplayOptions& options, const CommandContext& context) {
   const capture::Session session = capture::open_session(options.session.folder);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
   auto frames = capture::open_frames(session, options.session.start, options.session.end);
+  if (options.preview) frames = capture::at_recorded_pace(std::move(frames));
   const auto refinement = refine_board(session, options, context);
 
   const FitOutcome outcome = fit_session(options, session, refinement, std::move(frames), context);

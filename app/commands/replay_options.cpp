@@ -114,11 +114,10 @@ void add_model_options(CLI::App& command, ReplayOptions& options) {
       ->capture_default_str();
   command.add_flag("--exposure,!--no-exposure", options.photometric.exposure,
                    "Estimate every frame's exposure against the model and take it out");
-  command.add_flag(
-      "--refuse-mismatches", options.refuse_mismatches,
-      "Keep frames out that contradict what earlier ones showed (jump of the exposure, wrong pose)");
-  command
-      .add_option("--snapshots", options.snapshots, "Folder for snapshots of the window (F12)")
+  command.add_flag("--refuse-mismatches", options.refuse_mismatches,
+                   "Keep frames out that contradict what earlier ones showed (jump of the "
+                   "exposure, wrong pose)");
+  command.add_option("--snapshots", options.snapshots, "Folder for snapshots of the window (F12)")
       ->type_name("DIR")
       ->capture_default_str();
 }
@@ -152,8 +151,10 @@ void add_replay_options(CLI::App& command, ReplayOptions& options) {
   add_session_options(command, options.session);
   command.add_flag("--refine-board", options.refine_board,
                    "Refine where the tags lie from the whole recording before posing frames");
-  command.add_flag("--preview", options.preview,
-                   "Watch it in a window; the program ends when the window is closed");
+  command.add_flag(
+      "--preview", options.preview,
+      "Watch it in a window, no faster than it was recorded; the program ends when the "
+      "window is closed");
   command
       .add_option("--mean-out", options.mean_output,
                   "Also save the mean colours, what a textured mesh would show")
