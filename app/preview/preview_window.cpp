@@ -161,7 +161,7 @@ void PreviewWindow::show_panel(const ImVec2& corner, const ImVec2& size) {
   if (!note_.empty()) status_.note = note_;
   contents.live = subject_.live != nullptr ? &status_ : nullptr;
   contents.facts = subject_.facts;
-  contents.redraws_per_s = pace_.redraws_per_s().value_or(0);
+  contents.drawing_ms = pace_.work_ms();
   for (const Command command : show_side_panel(contents, state_, window_.fonts())) obey(command);
   ImGui::End();
 }

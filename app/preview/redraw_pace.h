@@ -2,12 +2,10 @@
 #pragma once
 
 #include <chrono>
-#include <deque>
-#include <optional>
 
 namespace sheen::app {
 
-/// How often the window is redrawn, and whether that costs more time than a fluent picture has.
+/// Whether redraws take more time than a fluent picture has.
 class RedrawPace {
  public:
   using Clock = std::chrono::steady_clock;
@@ -16,16 +14,16 @@ class RedrawPace {
   void begin(Clock::time_point now = Clock::now()) { begin_ = now; }
   void end(Clock::time_point now = Clock::now());
 
-  /// Of the last second or so; nothing before the second redraw.
-  [[nodiscard]] std::optional<double> redraws_per_s() const;
+  /// Wall time of a redraw, averaged over the last few.
+  [[nodiscard]] double work_ms() const { return 1e3 * recent_s_; }
   /// Recent redraws took so long that 30 a second are in danger. Remains so until they could be
   /// done with far more to draw, so that the picture does not flicker between two qualities.
   [[nodiscard]] bool is_slow() const { return is_slow_; }
 
  private:
   Clock::time_point begin_{};
-  std::deque<Clock::time_point> ends_;
-  double recent_s_ = 0;  ///< work of a redraw, averaged over the last few
+  bool is_set_up_ = false;  ///< the first redraw, which makes everything, is over
+  double recent_s_ = 0;
   bool is_slow_ = false;
 };
 

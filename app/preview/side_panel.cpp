@@ -163,10 +163,10 @@ void frame_counts(const LiveStatus& live) {
   }
 }
 
-void stage_times(const LiveStatus& live, double redraws_per_s) {
+void stage_times(const LiveStatus& live, double drawing_ms) {
   heading("Milliseconds a frame");
   for (const auto& [stage, ms] : live.stage_ms) row(stage, fmt::format("{:.1f}", ms));
-  row("drawing", fmt::format("{:.0f} / s", redraws_per_s));
+  row("drawing", fmt::format("{:.1f}", drawing_ms));
 }
 
 void live_buttons(const LiveStatus& live, Clicks& clicks) {
@@ -207,7 +207,7 @@ std::vector<Command> show_side_panel(const PanelContents& contents, const ViewSt
     quality_curve(*live);
     frame_counts(*live);
   }
-  if (live != nullptr) stage_times(*live, contents.redraws_per_s);
+  if (live != nullptr) stage_times(*live, contents.drawing_ms);
   gap(0.5f);
   text(theme::kQuiet, "H  all keys");
   return clicks;

@@ -33,7 +33,7 @@ using ModelFacts = std::vector<std::pair<std::string, std::string>>;
 struct PanelContents {
   const LiveStatus* live = nullptr;  ///< null for a finished model
   ModelFacts facts;                  ///< of a finished model
-  double redraws_per_s = 0;
+  double drawing_ms = 0;
 };
 
 /// Fills the present ImGui window; returns what was clicked.
