@@ -92,7 +92,9 @@ void PreviewWindow::look_at_model() {
       painter_.note_changes(changes);
     }
     painter_.send_changes(kBytesPerRedraw);
-    if (painter_.draws_from_model()) model_view_.paint(painter_, state_.layer, pace_.is_slow());
+    if (!painter_.draws_from_model()) return;
+    model_view_.paint(painter_, state_.layer, pace_.is_slow());
+    camera_view_.paint(painter_, state_);
   });
 }
 
