@@ -117,7 +117,7 @@ void measure(const char* what, app::PreviewWindow& window, const Capture& captur
 
 void run(const PaceOptions& options) {
   const capture::Session session = capture::open_session(options.session);
-  const core::Mesh mesh = app::read_session_mesh(session);
+  const core::Mesh mesh = app::read_object_mesh(session.mesh);
   fmt::print("view,redraws_per_s,cores,frames_dropped\n");
   for (const bool turns : {true, false}) {
     Capture capture(options, session, mesh);
