@@ -37,9 +37,10 @@ SampleLog::SampleLog() : file_(std::tmpfile()) {
 
 void SampleLog::append(const core::SampleBatch& batch) {
   const std::size_t begin = begin_of(size());
+  // The data of an empty column may be a null pointer, which no file takes.
   const auto write = [this](const auto& column) {
-    return std::fwrite(column.data(), sizeof(column[0]), column.size(), file_.get()) ==
-           column.size();
+    return column.empty() || std::fwrite(column.data(), sizeof(column[0]), column.size(),
+                                         file_.get()) == column.size();
   };
   if (!seek(file_.get(), begin) || !for_each_column(batch, write) ||
       std::fflush(file_.get()) != 0) {
@@ -58,7 +59,7 @@ void SampleLog::read(std::size_t idx, core::SampleBatch& batch) const {
   const std::size_t count = ends_[idx] - begin_of(idx);
   const auto read_column = [&](auto& column) {
     column.resize(count);
-    return std::fread(column.data(), sizeof(column[0]), count, file_.get()) == count;
+    return count == 0 || std::fread(column.data(), sizeof(column[0]), count, file_.get()) == count;
   };
   if (!seek(file_.get(), begin_of(idx)) || !for_each_column(batch, read_column)) {
     throw failure("does not give back the samples that undo needs");
