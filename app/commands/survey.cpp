@@ -16,6 +16,7 @@ namespace sheen::app {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr double kImplausibleShift_m = 0.005;  // paper curls and glue slips by less
 
 struct SurveyOptions {
   std::filesystem::path session;
@@ -134,6 +135,9 @@ void run_survey(SurveyOptions options, const CommandContext& context) {
   }
   if (!options.picture.empty()) {
     core::write_image(options.picture, capture::draw_board_change(given, found->board));
+  }
+  if (found->median_shift_m > kImplausibleShift_m) {
+    context.note("note: tags lie far from where the board says; check its sizes with a ruler");
   }
   context.publish(to_json(*found, changes), describe(*found, changes) + written);
 }

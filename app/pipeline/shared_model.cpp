@@ -3,11 +3,6 @@
 
 namespace sheen::app {
 
-fitting::ModelUpdate SharedModel::take_changes() {
-  const std::lock_guard lock(mutex_);
-  return collect_changes();
-}
-
 fitting::ModelUpdate SharedModel::collect_changes() {
   fitting::ModelUpdate update;
   for (std::size_t i = 0; i < is_changed_.size(); ++i) {

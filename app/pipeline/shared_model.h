@@ -44,9 +44,6 @@ class SharedModel {
     note(representation_.finish());
   }
 
-  /// What changed since the last call.
-  fitting::ModelUpdate take_changes();
-
  private:
   fitting::ModelUpdate collect_changes();
   void note(const fitting::ModelUpdate& update) {

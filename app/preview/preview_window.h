@@ -46,8 +46,6 @@ class PreviewWindow {
   [[nodiscard]] OrbitCamera& camera() { return model_view_.camera(); }
   /// The window as last drawn, CV_8UC3 BGR.
   [[nodiscard]] const cv::Mat& picture() const { return picture_; }
-  /// Changes that are still on their way to the screen.
-  [[nodiscard]] bool is_behind() const { return painter_.has_changes(); }
 
  private:
   void take_news();

@@ -26,10 +26,6 @@ struct FrameScore {
   double gain = 1;
   /// Median surprise once the gain is taken out.
   double surprise_without_gain = 0;
-
-  [[nodiscard]] double novelty() const {
-    return samples == 0 ? 0 : 1 - static_cast<double>(familiar) / static_cast<double>(samples);
-  }
 };
 
 /// What is known about one patch, 24 bytes.

@@ -15,16 +15,16 @@ ROOMS = {
     "render": {"core", "fitting", "render"},
     "bench": {"core", "fitting", "bench"},
     "bench/micro": {"core", "capture", "fitting", "render", "bench"},  # programs that measure a stage
-    "bench/pipeline": {"core", "capture", "fitting", "render", "bench", "app"},  # the whole producer
+    "bench/pipeline": {"core", "capture", "fitting", "render", "bench", "app"},  # the whole pipeline
+    "bench/preview": {"core", "capture", "fitting", "render", "bench", "app"},  # the window over it
     "app": {"core", "capture", "fitting", "render", "bench", "app"},
 }
 # Libraries that may be met in some rooms only: pattern of the include -> rooms.
 LIBRARIES = {
     r"GL/|OSMesa|epoxy": {"render"},
     r"apriltag/|opencv2/(calib3d|videoio|aruco)": {"capture", "bench/micro"},
-    r"tiny_gltf": {"fitting"},
     r"assimp/|embree3/": {"core"},
-    r"CLI/": {"app", "bench", "bench/pipeline"},
+    r"CLI/": {"app", "bench", "bench/pipeline", "bench/preview"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 
