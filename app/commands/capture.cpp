@@ -23,7 +23,26 @@ std::string size_text(int width_px, int height_px) {
   return fmt::format("{}x{}", width_px, height_px);
 }
 
+/// Raw pictures share chroma between pairs of pixels, NV12 between pairs of rows too.
+bool can_be_recorded(const capture::CameraDescription& camera) {
+  switch (camera.format) {
+    case capture::PixelFormat::mjpeg:
+      return true;
+    case capture::PixelFormat::yuyv:
+      return camera.width_px % 2 == 0;
+    case capture::PixelFormat::nv12:
+      return camera.width_px % 2 == 0 && camera.height_px % 2 == 0;
+  }
+  return false;
+}
+
 void check_size(const capture::CameraDescription& camera, const core::CameraModel& model) {
+  if (!can_be_recorded(camera)) {
+    throw core::bad_input(camera.device,
+                          fmt::format("delivers raw pictures of odd size, {}",
+                                      size_text(camera.width_px, camera.height_px)),
+                          "choose an even --size or --format mjpeg");
+  }
   if (camera.width_px == model.width_px() && camera.height_px == model.height_px()) return;
   throw core::bad_input(camera.device,
                         fmt::format("delivers {} but the camera file is for {}",

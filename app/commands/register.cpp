@@ -21,8 +21,9 @@ namespace {
 
 constexpr std::size_t kPictureViews = 6;
 constexpr std::size_t kTrialViews = 10;
-constexpr int kTurns = 12;             // first guesses of an upright object about z
-constexpr double kTrialSearch = 0.35;  // of the radius: half-way to the next guess, and more
+constexpr int kTurns = 12;              // first guesses of an upright object about z
+constexpr double kTrialSearch = 0.35;   // of the radius: half-way to the next guess, and more
+constexpr double kTrustedShare = 0.75;  // of the outline on edges: recordings that fit reach 0.9
 
 struct RegisterOptions {
   SessionOptions session;
@@ -197,6 +198,12 @@ void run_register(const RegisterOptions& options, const CommandContext& context)
   // Save.
   if (!options.picture.empty()) write_picture(options, session, mesh, views, guess, *found);
   const std::string lines = save(session_file, output, found->stage_from_object);
+  if (found->matched_share < kTrustedShare) {
+    context.note(
+        fmt::format("note: only {:.0f} % of the outline lies on edges; look at --picture, "
+                    "and whether board and mesh are in metres",
+                    100 * found->matched_share));
+  }
   context.publish(to_json(*found), describe(*found) + lines);
 }
 

@@ -27,10 +27,11 @@
 namespace sheen::app {
 namespace {
 
-/// The two light fields every replay builds from the same samples.
+/// What a replay builds from the same samples: the light field and, to compare with, mean colours.
 struct LightFields {
   std::unique_ptr<fitting::Representation> fitted;
-  std::unique_ptr<fitting::Representation> mean;  ///< null when `fitted` is the mean itself
+  /// Null when nobody asks for mean colours, or `fitted` is the mean itself.
+  std::unique_ptr<fitting::Representation> mean;
   /// The same two where views may be taken back; else null.
   fitting::RewindableRepresentation* fitted_history = nullptr;
   fitting::RewindableRepresentation* mean_history = nullptr;
@@ -48,7 +49,8 @@ struct LightFields {
       return rewindable;
     };
     fitted = make(options.registered_name(), fitted_history);
-    if (options.registered_name() != "mean") mean = make("mean", mean_history);
+    const bool is_asked_for = options.session.hold_out > 0 || !options.mean_output.empty();
+    if (is_asked_for && options.registered_name() != "mean") mean = make("mean", mean_history);
   }
 
   [[nodiscard]] const fitting::LightField& mean_colours() const {

@@ -147,6 +147,12 @@ void add_replay_options(CLI::App& command, ReplayOptions& options) {
       .add_option("--hold-out", options.session.hold_out,
                   "Keep every N-th frame out of the fit and report the error on them; 0: none")
       ->check(CLI::NonNegativeNumber)
+      ->check(CLI::Validator(
+          [](const std::string& every) {
+            return every == "1" ? std::string("1 would keep every frame out, use 2 or more")
+                                : std::string();
+          },
+          ""))
       ->capture_default_str();
   add_session_options(command, options.session);
   command.add_flag("--refine-board", options.refine_board,

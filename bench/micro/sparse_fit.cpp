@@ -76,20 +76,25 @@ class Walk {
 
 constexpr double kPerNanosecond = 1e-9;
 
+// Goes on along a walk; the making of the samples is not measured.
+void absorb(benchmark::State& state, Representation& representation, Walk& walk) {
+  for (auto _ : state) {
+    state.PauseTiming();
+    const core::SampleBatch& batch = walk.next();
+    state.ResumeTiming();
+    representation.absorb(batch);
+  }
+  state.counters["ns/sample"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * kSeen * kPerNanosecond,
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
 // 20 degrees a second at 30 frames a second, after a walk all round.
 void absorb_steady(benchmark::State& state) {
   const auto representation = make_sparse(1);
   Walk walk(0.67f);
   for (int view = 0; view < 600; ++view) representation->absorb(walk.next());
-  for (auto _ : state) {
-    state.PauseTiming();
-    const core::SampleBatch& batch = walk.next();
-    state.ResumeTiming();
-    representation->absorb(batch);
-  }
-  state.counters["ns/sample"] =
-      benchmark::Counter(static_cast<double>(state.iterations()) * kSeen * kPerNanosecond,
-                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  absorb(state, *representation, walk);
 }
 BENCHMARK(absorb_steady)->Unit(benchmark::kMillisecond)->Iterations(200);
 
@@ -97,15 +102,7 @@ BENCHMARK(absorb_steady)->Unit(benchmark::kMillisecond)->Iterations(200);
 void absorb_growing(benchmark::State& state) {
   const auto representation = make_sparse(1);
   Walk walk(6.0f);
-  for (auto _ : state) {
-    state.PauseTiming();
-    const core::SampleBatch& batch = walk.next();
-    state.ResumeTiming();
-    representation->absorb(batch);
-  }
-  state.counters["ns/sample"] =
-      benchmark::Counter(static_cast<double>(state.iterations()) * kSeen * kPerNanosecond,
-                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  absorb(state, *representation, walk);
 }
 BENCHMARK(absorb_growing)->Unit(benchmark::kMillisecond)->Iterations(120);
 

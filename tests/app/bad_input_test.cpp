@@ -183,6 +183,7 @@ TEST_F(BadInput, WrongArguments) {
   expect_one_line(run_sheen({}), "subcommand is required");
   expect_one_line(run_sheen({"replay", session_, "-o", model_, "--centers", "17"}), "--centers");
   expect_one_line(run_sheen({"replay", session_, "-o", model_, "--fitter", "best"}), "--fitter");
+  expect_one_line(run_sheen({"replay", session_, "-o", model_, "--hold-out", "1"}), "2 or more");
   expect_one_line(run_sheen({"replay", session_, "-o", model_, "--hold-out", "-1"}), "--hold-out");
   expect_one_line(run_sheen({"replay", session_, "-o", model_, "--threads", "0"}), "--threads");
   expect_one_line(run_sheen({"synth", "chrome", "-o", folder_.path() / "s"}), "chrome");

@@ -110,6 +110,29 @@ TEST_F(LiveCapture, KeepsRecordingAndModelWhenTheCameraIsGone) {
   EXPECT_TRUE(model() == replay());
 }
 
+/// Says of itself that its raw pictures are of odd width.
+class OddCamera : public PlayingCamera {
+ public:
+  [[nodiscard]] capture::CameraDescription description() const override {
+    auto odd = PlayingCamera::description();
+    odd.format = capture::PixelFormat::yuyv;
+    odd.width_px = 641;
+    return odd;
+  }
+};
+
+TEST_F(LiveCapture, RefusesRawPicturesThatCannotBePackedBeforeTheFolderIsMade) {
+  try {
+    app::capture_session(std::make_unique<OddCamera>(), options_, context_);
+    FAIL() << "nothing was thrown";
+  } catch (const core::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("odd size, 641x360"), std::string::npos)
+        << error.what();
+    EXPECT_EQ(error.kind(), core::Error::Kind::bad_input);
+  }
+  EXPECT_FALSE(std::filesystem::exists(options_.session));
+}
+
 /// Somebody presses Ctrl-C when picture 10 is due.
 class InterruptedCamera : public PlayingCamera {
  public:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "capture/source/v4l2_camera.h"
 #include "capture/source/v4l2_system.h"
 
 #include <linux/videodev2.h>
@@ -140,5 +141,12 @@ class ScriptedV4l2 : public V4l2System {
 
 /// The count that a picture carries: in its first four bytes, for MJPEG after the mark SOI.
 [[nodiscard]] std::uint32_t picture_count(const std::uint8_t* bytes, bool jpeg);
+
+/// Starts at once, so that the first picture of the stream is the first one dropped.
+inline V4l2CameraOptions at_once() {
+  V4l2CameraOptions options;
+  options.lock_automatics = false;
+  return options;
+}
 
 }  // namespace sheen::capture::test

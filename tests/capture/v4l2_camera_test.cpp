@@ -16,15 +16,9 @@ namespace {
 
 using namespace std::chrono_literals;
 using core::Error;
+using test::at_once;
 using test::picture_count;
 using test::ScriptedV4l2;
-
-/// Starts at once, so that the first picture of the stream is the first one dropped.
-V4l2CameraOptions at_once() {
-  V4l2CameraOptions options;
-  options.lock_automatics = false;
-  return options;
-}
 
 struct Taken {
   std::uint32_t count;

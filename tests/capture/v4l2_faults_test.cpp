@@ -17,14 +17,9 @@ namespace {
 
 using namespace std::chrono_literals;
 using core::Error;
+using test::at_once;
 using test::picture_count;
 using test::ScriptedV4l2;
-
-V4l2CameraOptions at_once() {
-  V4l2CameraOptions options;
-  options.lock_automatics = false;
-  return options;
-}
 
 /// Numbers of the pictures that came while `rounds` times 100 ms passed.
 std::vector<std::uint32_t> sequences(V4l2Camera& camera, int rounds) {

@@ -76,6 +76,7 @@ TEST_F(DeviceCapture, ACaptureGoesOnInTheSameSessionWhenTheCameraIsBack) {
   const TemporaryFolder folder;
   const std::string session = folder.path() / "session";
   // Two seconds of pictures after the settling, then none for longer than a camera may be silent.
+  // Silence is what is tested, so time must pass; the rig's clock is simulated and passes exactly.
   std::optional<LoopbackPlayer> player(std::in_place, loopback_node, recording);
   auto cable = std::async(std::launch::async, [&] {
     std::this_thread::sleep_for(4s);

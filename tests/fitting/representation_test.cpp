@@ -16,32 +16,6 @@ namespace {
 
 constexpr std::size_t kPatches = 3000;
 
-// A view that sees a random third of the patches from a random side.
-core::SampleBatch random_view(std::mt19937& random) {
-  const auto unit = [&] { return static_cast<double>(random()) / 4294967296.0; };
-  core::SampleBatch batch;
-  const Eigen::Vector2d side(1.4 * unit() - 0.7, 1.4 * unit() - 0.7);
-  for (std::uint32_t patch = 0; patch < kPatches; ++patch) {
-    if (unit() > 0.33) continue;
-    const Eigen::Vector2d x = side + 0.1 * Eigen::Vector2d(unit(), unit());
-    testing::add_sample(batch, patch, x, {unit(), 0.5 * x.x() + 0.5, 0.3});
-  }
-  return batch;
-}
-
-// Everything a model holds, as its part of the model file.
-std::string bytes_of(const LightField& light_field) {
-  std::string all;
-  for (const ModelCodec& codec : model_codecs()) {
-    if (codec.representation != light_field.representation()) continue;
-    const ModelPart part = codec.encode(light_field);
-    for (const auto& [name, bytes] : part.arrays) {
-      all.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    }
-  }
-  return all;
-}
-
 // What a model holds of each patch.
 std::vector<std::string> patches_of(const LightField& light_field) {
   std::vector<std::string> patches(kPatches);
@@ -62,7 +36,7 @@ std::vector<std::string> patches_of(const LightField& light_field) {
     return patches;
   }
   // All others keep the same number of bytes for every patch.
-  const std::string all = bytes_of(light_field);
+  const std::string all = testing::bytes_of(light_field);
   const std::size_t stride = all.size() / kPatches;
   for (std::size_t i = 0; i < kPatches; ++i) patches[i] = all.substr(i * stride, stride);
   return patches;
@@ -90,10 +64,10 @@ TEST(Representation, ThreadsDoNotChangeTheResult) {
         const auto representation =
             make_representation(name, testing::isolated(kPatches), candidates(threads)[i]);
         for (int view = 0; view < 20; ++view) {
-          updates[threads] = representation->absorb(random_view(random)).patches;
+          updates[threads] = representation->absorb(testing::random_view(kPatches, random)).patches;
         }
         representation->finish();
-        models[threads] = bytes_of(representation->light_field());
+        models[threads] = testing::bytes_of(representation->light_field());
         fits[threads] = representation->statistics().fits;
       }
       for (const int threads : {2, 8}) {
@@ -127,9 +101,9 @@ TEST(Representation, UpdatesListExactlyWhatChanged) {
         observed_before = model.observed();
       };
       for (int view = 0; view < 6; ++view)
-        expect_exact(representation->absorb(random_view(random)));
+        expect_exact(representation->absorb(testing::random_view(kPatches, random)));
       expect_exact(representation->finish());
-      expect_exact(representation->absorb(random_view(random)));
+      expect_exact(representation->absorb(testing::random_view(kPatches, random)));
       expect_exact(representation->finish());
       // Nothing new: nothing changes.
       EXPECT_TRUE(representation->finish().patches.empty());

@@ -10,33 +10,6 @@ namespace {
 
 constexpr std::size_t kPatches = 300;
 
-// A view of a random third of the patches from about one side.
-core::SampleBatch random_view(std::mt19937& random) {
-  const auto unit = [&] { return static_cast<double>(random()) / 4294967296.0; };
-  core::SampleBatch batch;
-  const Eigen::Vector2d side(1.4 * unit() - 0.7, 1.4 * unit() - 0.7);
-  for (std::uint32_t patch = 0; patch < kPatches; ++patch) {
-    if (unit() > 0.33) continue;
-    const Eigen::Vector2d x = side + 0.1 * Eigen::Vector2d(unit(), unit());
-    testing::add_sample(batch, patch, x, {unit(), 0.5 * x.x() + 0.5, 0.3});
-  }
-  return batch;
-}
-
-// Every bit of a model, as it lies in the model file.
-std::string bytes_of(const LightField& light_field) {
-  std::string all;
-  for (const ModelCodec& codec : model_codecs()) {
-    if (codec.representation != light_field.representation()) continue;
-    const ModelPart part = codec.encode(light_field);
-    for (const auto& [name, bytes] : part.arrays) {
-      all.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    }
-  }
-  all.append(light_field.observed().begin(), light_field.observed().end());
-  return all;
-}
-
 class Rewind : public ::testing::TestWithParam<std::string> {
  protected:
   static std::unique_ptr<Representation> make() {
@@ -47,7 +20,7 @@ class Rewind : public ::testing::TestWithParam<std::string> {
 TEST_P(Rewind, ModelEqualsOneThatNeverSawTheUndoneViews) {
   std::mt19937 random(3);
   std::vector<core::SampleBatch> views;
-  for (int i = 0; i < 30; ++i) views.push_back(random_view(random));
+  for (int i = 0; i < 30; ++i) views.push_back(testing::random_view(kPatches, random));
 
   // One sees 20 views, takes 8 back and sees 10 more; the other sees 12 and the same 10.
   RewindableRepresentation undone(make);
@@ -55,26 +28,26 @@ TEST_P(Rewind, ModelEqualsOneThatNeverSawTheUndoneViews) {
   for (int i = 0; i < 20; ++i) undone.absorb(views[i]);
   undone.rewind(8, [](const core::SampleBatch&, const LightField&) {});
   for (int i = 0; i < 12; ++i) never_saw->absorb(views[i]);
-  EXPECT_EQ(bytes_of(undone.light_field()), bytes_of(never_saw->light_field()));
+  EXPECT_EQ(testing::bytes_of(undone.light_field()), testing::bytes_of(never_saw->light_field()));
   for (int i = 20; i < 30; ++i) {
     undone.absorb(views[i]);
     never_saw->absorb(views[i]);
   }
-  EXPECT_EQ(bytes_of(undone.light_field()), bytes_of(never_saw->light_field()));
+  EXPECT_EQ(testing::bytes_of(undone.light_field()), testing::bytes_of(never_saw->light_field()));
   undone.finish();
   never_saw->finish();
-  EXPECT_EQ(bytes_of(undone.light_field()), bytes_of(never_saw->light_field()));
+  EXPECT_EQ(testing::bytes_of(undone.light_field()), testing::bytes_of(never_saw->light_field()));
   EXPECT_EQ(undone.statistics().samples, never_saw->statistics().samples);
 }
 
 TEST_P(Rewind, TakingEverythingBackLeavesAnEmptyModel) {
   std::mt19937 random(4);
   RewindableRepresentation representation(make);
-  const std::string empty = bytes_of(representation.light_field());
-  for (int i = 0; i < 3; ++i) representation.absorb(random_view(random));
-  EXPECT_NE(bytes_of(representation.light_field()), empty);
+  const std::string empty = testing::bytes_of(representation.light_field());
+  for (int i = 0; i < 3; ++i) representation.absorb(testing::random_view(kPatches, random));
+  EXPECT_NE(testing::bytes_of(representation.light_field()), empty);
   representation.rewind(100, [](const core::SampleBatch&, const LightField&) {});
-  EXPECT_EQ(bytes_of(representation.light_field()), empty);
+  EXPECT_EQ(testing::bytes_of(representation.light_field()), empty);
   EXPECT_EQ(representation.statistics().samples, 0u);
 }
 
@@ -90,11 +63,11 @@ TEST(SampleLog, GivesBackWhatItWasGiven) {
   SampleLog log;
   std::vector<core::SampleBatch> views;
   for (int i = 0; i < 5; ++i) {
-    views.push_back(i == 2 ? core::SampleBatch{} : random_view(random));
+    views.push_back(i == 2 ? core::SampleBatch{} : testing::random_view(kPatches, random));
     log.append(views.back());
   }
   log.truncate(4);
-  views[4] = random_view(random);
+  views[4] = testing::random_view(kPatches, random);
   log.append(views[4]);  // in place of the one forgotten
   core::SampleBatch batch;
   for (std::size_t i = 0; i < views.size(); ++i) {

@@ -4,6 +4,7 @@
 #include "core/mesh/neighbours.h"
 #include "core/samples/sample_batch.h"
 #include "fitting/iwls/light_field_model.h"
+#include "fitting/model_file/model_codec.h"
 #include "fitting/registry.h"
 
 #include <Eigen/Core>
@@ -106,6 +107,33 @@ inline const std::vector<iwls::Construction> kConstructions{
     iwls::Construction::quadtree, iwls::Construction::adaptive, iwls::Construction::batch};
 inline const std::vector<iwls::Layout> kLayouts{iwls::Layout::grid, iwls::Layout::jittered_grid,
                                                 iwls::Layout::disk, iwls::Layout::jittered_disk};
+
+/// A view of a random third of the patches from about one side.
+inline core::SampleBatch random_view(std::size_t patches, std::mt19937& random) {
+  const auto unit = [&] { return static_cast<double>(random()) / 4294967296.0; };
+  core::SampleBatch batch;
+  const Eigen::Vector2d side(1.4 * unit() - 0.7, 1.4 * unit() - 0.7);
+  for (std::uint32_t patch = 0; patch < patches; ++patch) {
+    if (unit() > 0.33) continue;
+    const Eigen::Vector2d x = side + 0.1 * Eigen::Vector2d(unit(), unit());
+    add_sample(batch, patch, x, {unit(), 0.5 * x.x() + 0.5, 0.3});
+  }
+  return batch;
+}
+
+/// Every bit of a model, as it lies in the model file.
+inline std::string bytes_of(const LightField& light_field) {
+  std::string all;
+  for (const ModelCodec& codec : model_codecs()) {
+    if (codec.representation != light_field.representation()) continue;
+    const ModelPart part = codec.encode(light_field);
+    for (const auto& [name, bytes] : part.arrays) {
+      all.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    }
+  }
+  all.append(light_field.observed().begin(), light_field.observed().end());
+  return all;
+}
 
 /// Options as a message for failing assertions.
 inline std::string text_of(const iwls::Options& options) {
