@@ -52,6 +52,10 @@ class LiveFrames : public FrameSource {
   }
 
   std::optional<Frame> next_unrecorded() {
+    // First what was taken to be recorded, then what came after the fault.
+    while (const auto picture = recording_.recorder_.next_unwritten()) {
+      if (auto frame = decode(*picture->jpeg, picture->time_us)) return frame;
+    }
     while (const auto picture = recording_.next_unrecorded()) {
       if (auto frame = decode(*picture->jpeg, picture->time_us)) return frame;
     }
@@ -106,6 +110,7 @@ void CameraRecording::record(const std::stop_token& stop) {
                                        "what was recorded is kept");
   }
   recorder_.close();
+  report_disk_fault();  // found after the last picture
   {
     const std::lock_guard lock(mutex_);
     status_.camera = camera_->counts();

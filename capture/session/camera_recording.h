@@ -55,8 +55,8 @@ class CameraRecording {
   void stop();
 
   /// Every recorded frame, the way a replay reads it: from the file, as it grows. Whoever is slow
-  /// catches up later. After a fault of the disk the frames go on, unrecorded, and old ones are
-  /// dropped. `next` waits for frames. To be destroyed before the recording.
+  /// catches up later. After a fault of the disk come all frames that were taken to be recorded;
+  /// those taken later go on, unrecorded, and the oldest of them are dropped. `next` waits for frames. To be destroyed before the recording.
   [[nodiscard]] std::unique_ptr<FrameSource> frames();
 
   [[nodiscard]] RecordingStatus status() const;

@@ -126,9 +126,19 @@ std::optional<core::Error> SessionRecorder::fault() const {
 std::optional<std::int64_t> SessionRecorder::wait_for(int index) const {
   std::unique_lock lock(mutex_);
   const auto place = static_cast<std::size_t>(index);
-  has_news_.wait(lock, [&] { return place < written_us_.size() || fault_ || is_closed_; });
+  const auto none_will_come = [&] { return (fault_ && !is_writing_) || is_closed_; };
+  has_news_.wait(lock, [&] { return place < written_us_.size() || none_will_come(); });
   if (place < written_us_.size()) return written_us_[place];
   return std::nullopt;
+}
+
+std::optional<LivePicture> SessionRecorder::next_unwritten() {
+  const std::lock_guard lock(mutex_);
+  if (!fault_ || is_writing_ || waiting_.empty()) return std::nullopt;
+  LivePicture picture = std::move(waiting_.front());
+  waiting_.pop_front();
+  waiting_bytes_ -= picture.jpeg->size();
+  return picture;
 }
 
 int SessionRecorder::written() const {
@@ -156,9 +166,20 @@ void SessionRecorder::write_all() {
       if (waiting_.empty() || fault_) break;
       picture = std::move(waiting_.front());
       waiting_.pop_front();
-      waiting_bytes_ -= picture.jpeg->size();
+      is_writing_ = true;
     }
-    write(picture);
+    const bool is_written = write(picture);
+    {
+      const std::lock_guard lock(mutex_);
+      is_writing_ = false;
+      if (is_written) {
+        waiting_bytes_ -= picture.jpeg->size();
+        written_us_.push_back(picture.time_us);
+      } else {
+        waiting_.push_front(std::move(picture));  // it was taken, so somebody gets it
+      }
+    }
+    has_news_.notify_all();
   }
   if (!fault()) {
     if (const int status = video_->close(); status != 0) set_fault(status);
@@ -166,26 +187,25 @@ void SessionRecorder::write_all() {
   }
   {
     const std::lock_guard lock(mutex_);
-    waiting_.clear();
     is_closed_ = true;
   }
   has_news_.notify_all();
 }
 
-void SessionRecorder::write(const LivePicture& picture) {
-  if (const int status = video_->append(*picture.jpeg); status != 0) return set_fault(status);
+bool SessionRecorder::write(const LivePicture& picture) {
+  if (const int status = video_->append(*picture.jpeg); status != 0) {
+    set_fault(status);
+    return false;
+  }
   // A picture counts once its stamp is there.
   const std::string line = stamp_line(written(), picture.time_us, picture.sequence);
   if (const int status = stamps_->write_at(stamps_end_, bytes_of(line)); status != 0) {
     stamps_->truncate(stamps_end_);
-    return set_fault(status);
+    set_fault(status);
+    return false;
   }
   stamps_end_ += line.size();
-  {
-    const std::lock_guard lock(mutex_);
-    written_us_.push_back(picture.time_us);
-  }
-  has_news_.notify_all();
+  return true;
 }
 
 void SessionRecorder::flush_until_stopped(const std::stop_token& stop) {

@@ -60,6 +60,10 @@ class SessionRecorder {
   /// be.
   [[nodiscard]] std::optional<std::int64_t> wait_for(int index) const;
 
+  /// After a fault, once `wait_for` has nothing more: the next of the pictures that were taken but
+  /// never came to the disk, in the order of `add`; nothing when there is none.
+  [[nodiscard]] std::optional<LivePicture> next_unwritten();
+
   /// Pictures in the file.
   [[nodiscard]] int written() const;
 
@@ -70,7 +74,7 @@ class SessionRecorder {
 
  private:
   void write_all();
-  void write(const LivePicture& picture);
+  [[nodiscard]] bool write(const LivePicture& picture);
   void flush_until_stopped(const std::stop_token& stop);
   void flush();
   void set_fault(int fault);
@@ -84,6 +88,7 @@ class SessionRecorder {
   mutable std::condition_variable has_news_;
   std::deque<LivePicture> waiting_;
   std::size_t waiting_bytes_ = 0;
+  bool is_writing_ = false;  ///< a picture is neither in `waiting_` nor in the file
   std::vector<std::int64_t> written_us_;  ///< times of the pictures in the file
   std::optional<core::Error> fault_;
   bool is_closing_ = false;

@@ -195,6 +195,33 @@ TEST(SessionRecorder, KeepsWhatWasRecordedWhenTheDiskIsFull) {
   EXPECT_EQ(count_frames(open_session(folder)), 7);
 }
 
+TEST(SessionRecorder, GivesBackWhatItTookAndCouldNotWrite) {
+  // The writer may be slow or fast; in any order what was taken is written or given back. Attempts
+  // go on until pictures waited behind the one that met the full disk.
+  const ScratchFolder scratch;
+  const SessionSetup setup = recording_setup(scratch);
+  std::vector<LivePicture> pictures;
+  for (int i = 0; i < 20; ++i) pictures.push_back(live_picture(i, kCameraBytes));
+  bool some_waited = false;
+  for (int attempt = 0; attempt < 200 && !some_waited; ++attempt) {
+    const auto folder = scratch.path() / std::to_string(attempt);
+    SessionRecorder recorder(folder, setup, kFps);
+    const FullDisk full(5000 + 7 * (kCameraBytes + 10) + kCameraBytes / 2);
+    int taken = 0;
+    while (taken < 20 && recorder.add(pictures[static_cast<std::size_t>(taken)])) ++taken;
+    int seen = 0;
+    while (recorder.wait_for(seen)) ++seen;
+    EXPECT_EQ(seen, 7);
+    while (const auto picture = recorder.next_unwritten()) {
+      EXPECT_EQ(picture->time_us, live_picture(seen).time_us);
+      ++seen;
+    }
+    EXPECT_EQ(seen, taken);
+    some_waited = taken > 8;  // the eighth met the full disk
+  }
+  EXPECT_TRUE(some_waited);
+}
+
 /// Delivers numbered pictures until it has none left, then only time passes.
 class CountingCamera : public Camera {
  public:
@@ -271,8 +298,39 @@ TEST(CameraRecording, GoesOnWithoutTheDisk) {
     EXPECT_EQ(recording.status().recorded, 7);
   }
   EXPECT_EQ(reports, 1);
-  EXPECT_GT(frames, 7);  // the last picture at least comes after the fault
+  EXPECT_GT(frames, 7);  // the picture that met the full disk at least
   EXPECT_EQ(count_frames(open_session(folder)), 7);
+}
+
+TEST(CameraRecording, ReportsAFaultThatIsFoundAfterTheLastPicture) {
+  constexpr int pictures = 12;
+  const ScratchFolder scratch;
+  const SessionSetup setup = recording_setup(scratch);
+  // As many bytes as the pictures take, so that the index at the end finds no room.
+  std::uintmax_t bytes = 0;
+  {
+    SessionRecorder recorder(scratch.path() / "first", setup, kFps);
+    for (int i = 0; i < pictures; ++i) ASSERT_TRUE(recorder.add(live_picture(i, kCameraBytes)));
+    ASSERT_TRUE(recorder.wait_for(pictures - 1));
+    bytes = std::filesystem::file_size(scratch.path() / "first" / "frames.avi");
+  }
+  const auto folder = scratch.path() / "walk";
+  SessionRecorder recorder(folder, setup, kFps);
+  int reports = 0;
+  int frames = 0;
+  {
+    const FullDisk full(bytes);
+    CameraRecording recording(
+        std::make_unique<CountingCamera>(pictures), recorder,
+        {.frames = pictures, .on_disk_fault = [&](const core::Error&) { ++reports; }});
+    const auto live = recording.frames();
+    while (live->next()) ++frames;
+    recording.stop();
+    EXPECT_TRUE(recording.status().disk_fault);
+  }
+  EXPECT_EQ(frames, pictures);
+  EXPECT_EQ(reports, 1);
+  EXPECT_EQ(count_frames(open_session(folder)), pictures);
 }
 
 /// Runs out of memory at picture 3.
