@@ -104,7 +104,7 @@ void add_design_options(CLI::App& command, BoardOptions& options) {
 void add_board_command(CLI::App& program, CommandContext& context) {
   auto options = std::make_shared<BoardOptions>();
   CLI::App* command =
-      program.add_subcommand("board", "Make a printable stage of tags (PDF) and its board.yaml");
+      program.add_subcommand("board", "Make a printable board of tags (PDF) and its board.yaml");
   command->footer(
       "Examples:\n"
       "  sheen board -o board.pdf                        one A4 sheet, free middle\n"

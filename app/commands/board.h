@@ -5,7 +5,7 @@
 
 namespace sheen::app {
 
-/// `sheen board -o board.pdf`: a printable stage of tags and its board.yaml.
+/// `sheen board -o board.pdf`: a printable board of tags and its board.yaml.
 void add_board_command(CLI::App& program, CommandContext& context);
 
 }  // namespace sheen::app

@@ -151,7 +151,7 @@ void add_capture_command(CLI::App& program, CommandContext& context) {
   CLI::App* command =
       program.add_subcommand("capture", "Record an object live and turn it into a light field");
   command->footer(
-      "Example: walk round the object until Ctrl-C, with the stage of an earlier session:\n"
+      "Example: walk round the object until Ctrl-C, with the board of an earlier session:\n"
       "  sheen capture /dev/video0 -o knot --like sample_data/glossy --headless");
   add_capture_options(*command, *options);
   add_common_options(*command, context);

@@ -97,12 +97,12 @@ void add_capture_options(CLI::App& command, CaptureOptions& options) {
       ->type_name("SESSION");
   command.add_option("--camera", options.camera_file, "Camera file, from sheen calibrate")
       ->type_name("FILE");
-  command.add_option("--board", options.board, "The tags on the stage")->type_name("FILE");
+  command.add_option("--board", options.board, "board.yaml: where the tags lie")->type_name("FILE");
   command.add_option("--mesh", options.mesh, "The object, in metres")->type_name("FILE");
   command
-      .add_option("--T-stage-object", options.stage_from_object,
+      .add_option("--T-stage-object", options.board_from_object,
                   "Where the object stands: 16 numbers row by row (default: as in --like, else the "
-                  "stage's own frame)")
+                  "board's own frame)")
       ->expected(16);
   command.add_option("--frames", options.frames, "Record so many pictures (default: until Ctrl-C)")
       ->check(CLI::PositiveNumber);
@@ -118,13 +118,13 @@ capture::SessionSetup read_setup(const CaptureOptions& options) {
   capture::SessionSetup setup;
   if (!options.like.empty()) {
     const capture::Session like = capture::open_session(options.like);
-    setup = {like.camera, like.board.value_or(""), like.mesh, like.stage_from_object};
+    setup = {like.camera, like.board.value_or(""), like.mesh, like.board_from_object};
   }
   if (!options.camera_file.empty()) setup.camera = capture::read_camera(options.camera_file);
   if (!options.board.empty()) setup.board = options.board;
   if (!options.mesh.empty()) setup.mesh = options.mesh;
-  if (!options.stage_from_object.empty()) {
-    setup.stage_from_object = transform_of(options.stage_from_object);
+  if (!options.board_from_object.empty()) {
+    setup.board_from_object = transform_of(options.board_from_object);
   }
   const auto require = [](bool is_there, const char* option) {
     if (is_there) return;

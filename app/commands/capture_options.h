@@ -20,7 +20,7 @@ struct CaptureOptions {
   std::filesystem::path session;  ///< to be recorded
   std::filesystem::path like;     ///< session whose camera, board and object are taken over
   std::filesystem::path camera_file, board, mesh;  ///< each replaces what `like` has; may be empty
-  std::vector<double> stage_from_object;           ///< 16 numbers by rows, or none
+  std::vector<double> board_from_object;           ///< 16 numbers by rows, or none
   std::optional<int> frames;                       ///< record no more pictures
   std::optional<double> seconds;                   ///< record no longer
   bool headless = false;                           ///< without a window

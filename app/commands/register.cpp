@@ -59,7 +59,7 @@ std::vector<capture::ChosenView> choose_frames(const capture::Session& session,
   std::vector<capture::PosedFrameIndex> posed;
   for (const PosedFrame& frame :
        pose_frames(session, options.session, [&](int read) { progress.show(read); })) {
-    posed.push_back({frame.index, frame.camera_from_stage});
+    posed.push_back({frame.index, frame.camera_from_board});
   }
   return capture::choose_views(posed, session.camera, centre, options.views);
 }
@@ -74,7 +74,7 @@ Views read_views(const capture::Session& session, const RegisterOptions& options
     if (!frame) break;
     throw_if_interrupted();
     if (frame->index != next->frame.index) continue;
-    result.views.push_back({frame->image.clone(), next->frame.camera_from_stage, next->weight});
+    result.views.push_back({frame->image.clone(), next->frame.camera_from_board, next->weight});
     result.frame_indices.push_back(frame->index);
     ++next;
   }
@@ -103,7 +103,7 @@ Eigen::Isometry3d best_turn(const capture::Session& session, const core::Mesh& m
     const double score = found->matched_share / (1 + found->residual_px);
     if (score <= best_score) continue;
     best_score = score;
-    best = found->stage_from_object;
+    best = found->board_from_object;
   }
   return best;
 }
@@ -122,7 +122,7 @@ std::string describe(const capture::Registration& found) {
 nlohmann::ordered_json to_json(const capture::Registration& found) {
   constexpr double degrees = 180 / std::numbers::pi;
   std::vector<double> numbers;
-  for (int i = 0; i < 16; ++i) numbers.push_back(found.stage_from_object.matrix()(i / 4, i % 4));
+  for (int i = 0; i < 16; ++i) numbers.push_back(found.board_from_object.matrix()(i / 4, i % 4));
   return {{"T_stage_object", numbers},
           {"residual_px", found.residual_px},
           {"matched_share", found.matched_share},
@@ -146,32 +146,32 @@ void write_picture(const RegisterOptions& options, const capture::Session& sessi
   core::write_image(
       options.picture,
       capture::draw_registration(mesh, session.camera, thin_out(views.views, kPictureViews),
-                                 thin_out(labels, kPictureViews), before, found.stage_from_object));
+                                 thin_out(labels, kPictureViews), before, found.board_from_object));
 }
 
-/// Where the search begins: picked pairs, upright on the stage, or what the session says.
+/// Where the search begins: picked pairs, upright on the board, or what the session says.
 Eigen::Isometry3d first_guess(const RegisterOptions& options, const capture::Session& session,
                               const core::Mesh& mesh, const CommandContext& context) {
   if (!options.pairs.empty()) {
     const auto placement =
         capture::place_by_pairs(capture::read_point_pairs(options.pairs), options.pairs);
     context.note(fmt::format("note: the pairs fit each other to {:.1f} mm", 1e3 * placement.rms_m));
-    return placement.stage_from_object;
+    return placement.board_from_object;
   }
   if (options.guess == "upright") return capture::place_upright(mesh, 0);
-  return session.stage_from_object;
+  return session.board_from_object;
 }
 
 /// Writes session.json with the new place; the one it replaces is kept. Returns the lines that say
 /// so.
 std::string save(const std::filesystem::path& session_file, const std::filesystem::path& output,
-                 const Eigen::Isometry3d& stage_from_object) {
+                 const Eigen::Isometry3d& board_from_object) {
   std::string kept;
   std::error_code no_throw;
   if (std::filesystem::equivalent(output, session_file, no_throw)) {
     kept = fmt::format("kept        {}\n", capture::keep_before(session_file, "register").string());
   }
-  capture::write_stage_from_object(session_file, output, stage_from_object);
+  capture::write_board_from_object(session_file, output, board_from_object);
   return fmt::format("written     {}\n", output.string()) + kept;
 }
 
@@ -197,7 +197,7 @@ void run_register(const RegisterOptions& options, const CommandContext& context)
 
   // Save.
   if (!options.picture.empty()) write_picture(options, session, mesh, views, guess, *found);
-  const std::string lines = save(session_file, output, found->stage_from_object);
+  const std::string lines = save(session_file, output, found->board_from_object);
   if (found->matched_share < kTrustedShare) {
     context.note(
         fmt::format("note: only {:.0f} % of the outline lies on edges; look at --picture, "
@@ -239,13 +239,13 @@ void add_register_command(CLI::App& program, CommandContext& context) {
   auto options = std::make_shared<RegisterOptions>();
   CLI::App* command = program.add_subcommand(
       "register",
-      "Find where the mesh stands on the stage: lay its outline on the pictures' edges");
+      "Find where the mesh stands on the board: lay its outline on the pictures' edges");
   command->footer(
       "Examples:\n"
       "  sheen register SESSION --picture check.png      improve session.json's T_stage_object\n"
-      "  sheen register SESSION --guess upright          z up, near the stage's centre, any turn\n"
+      "  sheen register SESSION --guess upright          z up, near the board's centre, any turn\n"
       "  sheen register SESSION --pairs picked.txt       start from picked points; one a line:\n"
-      "                                                  x y z in the mesh  x y z on the stage\n"
+      "                                                  x y z in the mesh  x y z on the board\n"
       "The session.json it replaces is kept as session.before-register.json.");
   add_register_options(*command, *options);
   add_session_options(*command, options->session);

@@ -82,7 +82,7 @@ void write_poses(const std::filesystem::path& path, const std::vector<PosedFrame
   std::vector<capture::Trajectory::Entry> entries;
   entries.reserve(posed.size());
   for (const PosedFrame& frame : posed) {
-    entries.push_back({static_cast<double>(frame.index), frame.camera_from_stage.inverse()});
+    entries.push_back({static_cast<double>(frame.index), frame.camera_from_board.inverse()});
   }
   capture::write_trajectory(path, entries);
 }
@@ -217,7 +217,7 @@ std::unique_ptr<LiveSession> make_live_session(const ReplayOptions& options,
                          .baseline = fields.mean_history,
                          .mesh = mesh,
                          .camera = session.camera,
-                         .stage_from_object = session.stage_from_object,
+                         .board_from_object = session.board_from_object,
                          .limits = options.limits,
                          .is_camera = is_camera,
                          .refuse_faults = options.refuse_mismatches,
@@ -278,7 +278,7 @@ FitOutcome fit_session(const ReplayOptions& options, const capture::Session& ses
   ModelStage stage({.visibility = std::move(visibility.method),
                     .mesh = mesh,
                     .camera = session.camera,
-                    .stage_from_object = session.stage_from_object,
+                    .board_from_object = session.board_from_object,
                     .limits = options.limits,
                     .model = model,
                     .baseline = fields.mean.get(),

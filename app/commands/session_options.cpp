@@ -51,7 +51,7 @@ std::vector<PosedFrame> pose_frames(const capture::Session& session, const Sessi
     if (options.hold_out > 0 && !hold_out.contains(frame->index)) continue;
     const auto result = poses->estimate(*frame);
     if (const auto* pose = std::get_if<capture::FramePose>(&result)) {
-      posed.push_back({frame->index, frame->time_s, pose->camera_from_stage});
+      posed.push_back({frame->index, frame->time_s, pose->camera_from_board});
     }
   }
   if (posed.empty()) {

@@ -47,7 +47,7 @@ Summary summarise(const capture::BoardRefinement& found,
       summary.largest_id = change.id;
     }
     summary.tilt_deg = std::max(summary.tilt_deg, kDegrees * change.tilt_rad);
-    const double z = found.board.tags.at(change.id).stage_from_tag.translation().z();
+    const double z = found.board.tags.at(change.id).board_from_tag.translation().z();
     low = std::min(low, z);
     high = std::max(high, z);
   }

@@ -106,7 +106,7 @@ void add_synth_command(CLI::App& program, CommandContext& context) {
   auto options = std::make_shared<SynthOptions>();
   synthetic::SyntheticOptions& session = options->session;
   CLI::App* command = program.add_subcommand(
-      "synth", "Make a synthetic session: a known object, light and camera on a stage of tags");
+      "synth", "Make a synthetic session: a known object, light and camera on a board of tags");
   command->footer("Example:\n  sheen synth glossy -o session --frames 120");
   const std::vector<std::string> names(synthetic::kSceneNames.begin(),
                                        synthetic::kSceneNames.end());
@@ -129,7 +129,7 @@ void add_synth_command(CLI::App& program, CommandContext& context) {
           ->capture_default_str();
   command
       ->add_option("--mesh", options->mesh,
-                   "Put this mesh on the stage instead (metres, z up; PLY, OBJ or GLB)")
+                   "Put this mesh on the board instead (metres, z up; PLY, OBJ or GLB)")
       ->excludes(mesh_vertices)
       ->type_name("FILE");
   add_picture_options(*command, *options);

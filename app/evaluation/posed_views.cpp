@@ -16,7 +16,7 @@ void for_each_view(const capture::Session& session, const std::vector<PosedFrame
     const auto frame = frames->next();
     if (!frame) break;
     if (frame->index != view->index) continue;
-    visit(*frame, view->camera_from_stage * session.stage_from_object);
+    visit(*frame, view->camera_from_board * session.board_from_object);
     ++view;
   }
 }

@@ -17,7 +17,7 @@ void check_something_was_seen(const capture::Session& session, const FrameStatis
     throw core::bad_input(
         session.folder,
         fmt::format("none of {} frames got a pose ({})", frames.frames_read, reasons),
-        "check that board.yaml describes the printed board and that the stage is "
+        "check that board.yaml describes the printed board and that the board is "
         "in view and sharp");
   }
   if (samples == 0) {

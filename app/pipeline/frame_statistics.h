@@ -17,7 +17,7 @@ namespace sheen::app {
 struct PosedFrame {
   int index = 0;
   double time_s = 0;
-  Eigen::Isometry3d camera_from_stage = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
 };
 
 /// Everything that is counted while frames arrive.

@@ -35,13 +35,13 @@ std::optional<PosedFrame> ModelStage::count(const TrackedFrame& tracked) {
   }
   const auto& pose = std::get<capture::FramePose>(tracked.pose);
   if (pose.tags > 0) statistics_.reprojection_px.push_back(pose.reprojection_px);
-  return PosedFrame{tracked.frame.index, tracked.frame.time_s, pose.camera_from_stage};
+  return PosedFrame{tracked.frame.index, tracked.frame.time_s, pose.camera_from_board};
 }
 
 void ModelStage::observe(const capture::Frame& frame, core::StageTimes& times, PosedFrame& posed) {
   {
     const auto timing = times.measure("visibility");
-    see(posed.camera_from_stage * parts_.stage_from_object);
+    see(posed.camera_from_board * parts_.board_from_object);
   }
   if (parts_.photometric.refine_poses) {
     const auto timing = times.measure("align");
@@ -80,7 +80,7 @@ void ModelStage::see(const Eigen::Isometry3d& camera_from_object) {
 }
 
 PosedFrame ModelStage::refined(const capture::Frame& frame, PosedFrame posed) {
-  see(posed.camera_from_stage * parts_.stage_from_object);
+  see(posed.camera_from_board * parts_.board_from_object);
   align(frame, posed);
   return posed;
 }
@@ -88,10 +88,10 @@ PosedFrame ModelStage::refined(const capture::Frame& frame, PosedFrame posed) {
 std::optional<core::Alignment> ModelStage::align(const capture::Frame& frame, PosedFrame& posed) {
   const auto alignment = parts_.model.with([&](const fitting::Representation& representation) {
     return aligner_->align(frame.image, view_, representation.light_field(), parts_.camera,
-                           posed.camera_from_stage * parts_.stage_from_object);
+                           posed.camera_from_board * parts_.board_from_object);
   });
   if (alignment) {
-    posed.camera_from_stage = alignment->camera_from_object * parts_.stage_from_object.inverse();
+    posed.camera_from_board = alignment->camera_from_object * parts_.board_from_object.inverse();
   }
   return alignment;
 }

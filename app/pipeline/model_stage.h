@@ -25,7 +25,7 @@ class ModelStage {
     std::unique_ptr<core::Visibility> visibility;
     const core::Mesh& mesh;
     core::CameraModel camera;
-    Eigen::Isometry3d stage_from_object;
+    Eigen::Isometry3d board_from_object;
     core::SamplingLimits limits;
     SharedModel& model;
     fitting::Representation* baseline;  ///< absorbs the same samples for comparison; may be null

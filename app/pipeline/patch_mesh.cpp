@@ -22,8 +22,8 @@ std::optional<double> pixel_footprint_m(const capture::Session& session, const c
                                         capture::PoseEstimator& poses) {
   Eigen::AlignedBox3f bounds;
   for (const auto& position : mesh.positions) bounds.extend(position);
-  const Eigen::Vector3d centre_in_stage =
-      session.stage_from_object * bounds.center().cast<double>();
+  const Eigen::Vector3d centre_in_board =
+      session.board_from_object * bounds.center().cast<double>();
 
   std::vector<double> distances_m;
   const auto frames = capture::open_frames(session, 0, kReadFrames);
@@ -33,7 +33,7 @@ std::optional<double> pixel_footprint_m(const capture::Session& session, const c
     if (i % stride != 0 && !distances_m.empty()) continue;
     const auto result = poses.estimate(*frame);
     if (const auto* pose = std::get_if<capture::FramePose>(&result)) {
-      distances_m.push_back((pose->camera_from_stage * centre_in_stage).norm());
+      distances_m.push_back((pose->camera_from_board * centre_in_board).norm());
     }
   }
   if (distances_m.empty()) return std::nullopt;

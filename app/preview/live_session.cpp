@@ -15,8 +15,8 @@ namespace guidance = fitting::guidance;
 
 constexpr std::size_t kRecentFrames = 60;
 
-Eigen::Vector3f up_in_object(const Eigen::Isometry3d& stage_from_object) {
-  return stage_from_object.linear().row(2).transpose().cast<float>();
+Eigen::Vector3f up_in_object(const Eigen::Isometry3d& board_from_object) {
+  return board_from_object.linear().row(2).transpose().cast<float>();
 }
 
 }  // namespace
@@ -24,7 +24,7 @@ Eigen::Vector3f up_in_object(const Eigen::Isometry3d& stage_from_object) {
 LiveSession::LiveSession(Parts parts)
     : parts_(std::move(parts)), score_(parts_.mesh.positions.size()) {
   guide_.emplace(Guide::Parts{.mesh = parts_.mesh,
-                              .up = up_in_object(parts_.stage_from_object),
+                              .up = up_in_object(parts_.board_from_object),
                               .limits = parts_.limits,
                               .ask = [this] { return what_is_known(); },
                               .tell = [this](GuideAdvice advice) { take(std::move(advice)); }});
@@ -66,7 +66,7 @@ void LiveSession::publish(const TrackedFrame& tracked, const FrameStatistics& st
   } else {
     // The pose that was fitted with: refinement may have moved it.
     const PosedFrame& posed = statistics.posed.back();
-    status_.camera_from_object = posed.camera_from_stage * parts_.stage_from_object;
+    status_.camera_from_object = posed.camera_from_board * parts_.board_from_object;
     if (std::exchange(admitted_, false)) {
       views_.push_back({posed.time_s, *status_.camera_from_object});
     }

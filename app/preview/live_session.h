@@ -33,7 +33,7 @@ class LiveSession {
     fitting::RewindableRepresentation* baseline;  ///< is rewound with it; may be null
     const core::Mesh& mesh;
     core::CameraModel camera;
-    Eigen::Isometry3d stage_from_object;
+    Eigen::Isometry3d board_from_object;
     core::SamplingLimits limits;
     /// Frames come whether or not they are wanted: while paused they are not taken in. A recording
     /// waits instead.
@@ -87,7 +87,7 @@ class LiveSession {
   [[nodiscard]] const core::CameraModel& camera() const { return parts_.camera; }
   /// Upright axis of the stage in the object's frame.
   [[nodiscard]] Eigen::Vector3d up() const {
-    return parts_.stage_from_object.linear().row(2).transpose();
+    return parts_.board_from_object.linear().row(2).transpose();
   }
 
  private:

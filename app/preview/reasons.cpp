@@ -8,7 +8,7 @@ namespace sheen::app {
 
 std::string reason_in_words(std::string_view name) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 7> words{{
-      {"no_tags", "no tag in view: show the stage"},
+      {"no_tags", "no tag in view: show the board"},
       {"too_few_tags", "too few tags in view"},
       {"reprojection", "tags do not agree: board moved or bent?"},
       {"blur", "moving too fast: blur"},

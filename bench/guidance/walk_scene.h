@@ -15,7 +15,7 @@
 
 namespace sheen::bench {
 
-/// A ring of several materials, lying on a stage, whose radiance is known: a camera that walks
+/// A ring of several materials, lying on a board, whose radiance is known: a camera that walks
 /// round it gets a sample of every vertex it sees.
 class WalkScene {
  public:

@@ -36,7 +36,7 @@ Board make_board(int columns, int rows) {
   for (int id = 0; id < columns * rows; ++id) {
     Board::Tag tag;
     tag.size_m = kTag_m;
-    tag.stage_from_tag.translation() << (id % columns - (columns - 1) / 2.0) * kPitch_m,
+    tag.board_from_tag.translation() << (id % columns - (columns - 1) / 2.0) * kPitch_m,
         ((rows - 1) / 2.0 - id / columns) * kPitch_m, 0;
     board.tags[id] = tag;
   }
@@ -74,7 +74,7 @@ class Print {
 
   /// A square of the tag, its centre and side in sides of the tag.
   void fill(const Board::Tag& tag, const Eigen::Vector2d& centre, double side, double value) {
-    const Eigen::Vector3d& at = tag.stage_from_tag.translation();
+    const Eigen::Vector3d& at = tag.board_from_tag.translation();
     const Eigen::Vector2d middle = at.head<2>() + tag.size_m * centre;
     const double half_m = tag.size_m * side / 2;
     const cv::Point2f upper_left = px(middle.x() - half_m, middle.y() + half_m);
@@ -126,10 +126,10 @@ class Recording {
                                std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
     const Eigen::Vector3d forward = -eye.normalized();
     const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
-    Eigen::Isometry3d stage_from_camera = Eigen::Isometry3d::Identity();
-    stage_from_camera.linear() << right, forward.cross(right), forward;
-    stage_from_camera.translation() = eye;
-    return stage_from_camera.inverse();
+    Eigen::Isometry3d board_from_camera = Eigen::Isometry3d::Identity();
+    board_from_camera.linear() << right, forward.cross(right), forward;
+    board_from_camera.translation() = eye;
+    return board_from_camera.inverse();
   }
 
   [[nodiscard]] std::vector<Eigen::Vector3d> unproject_pixels() const {
@@ -141,12 +141,12 @@ class Recording {
   }
 
   [[nodiscard]] cv::Mat photograph(const Print& print, const std::vector<Eigen::Vector3d>& rays,
-                                   const Eigen::Isometry3d& camera_from_stage) const {
-    const Eigen::Isometry3d stage_from_camera = camera_from_stage.inverse();
-    const Eigen::Vector3d& eye = stage_from_camera.translation();
+                                   const Eigen::Isometry3d& camera_from_board) const {
+    const Eigen::Isometry3d board_from_camera = camera_from_board.inverse();
+    const Eigen::Vector3d& eye = board_from_camera.translation();
     cv::Mat place(camera_.height_px(), camera_.width_px(), CV_32FC2);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const Eigen::Vector3d ray = stage_from_camera.linear() * rays[i];
+      const Eigen::Vector3d ray = board_from_camera.linear() * rays[i];
       const Eigen::Vector3d p = eye - eye.z() / ray.z() * ray;
       place.at<cv::Point2f>(static_cast<int>(i)) = Print::px(p.x(), p.y());
     }
@@ -184,7 +184,7 @@ void BM_Track(benchmark::State& state) {
   for (auto _ : state) {
     const PoseResult result = estimator->estimate(seen.frame(i));
     const auto& pose = std::get<FramePose>(result);
-    worst_mm = std::max(worst_mm, position_error_mm(pose.camera_from_stage, seen.truth(i)));
+    worst_mm = std::max(worst_mm, position_error_mm(pose.camera_from_board, seen.truth(i)));
     tags += pose.tags;
     ++i;
   }
@@ -209,7 +209,7 @@ void BM_TrackGrey(benchmark::State& state) {
     for (const MeasuredCorner& corner : tracker.corners()) {
       const auto at = static_cast<std::size_t>(corner.corner);
       const auto& tag = seen.board().tags.at(corner.tag_id);
-      const auto truth = seen.camera().project(seen.truth(i) * tag.corners_in_stage()[at]);
+      const auto truth = seen.camera().project(seen.truth(i) * tag.corners_in_board()[at]);
       square_px += (corner.px - *truth).squaredNorm();
       ++corners;
     }
@@ -244,7 +244,7 @@ void BM_Detect(benchmark::State& state) {
   for (int i = 0; auto _ : state) {
     finder.look_at(seen.frame(i));
     const auto pose = estimate_joint_pose(seen.board(), seen.camera(), finder.find());
-    worst_mm = std::max(worst_mm, position_error_mm(pose->camera_from_stage, seen.truth(i)));
+    worst_mm = std::max(worst_mm, position_error_mm(pose->camera_from_board, seen.truth(i)));
     ++i;
   }
   state.counters["worst_mm"] = worst_mm;

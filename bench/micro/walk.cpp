@@ -25,7 +25,7 @@ Walk make_walk(int vertices) {
                                             Eigen::Vector3d::Zero(), radius_m);
   for (int view = 0; view < kViews; ++view) {
     walk.camera_from_object.push_back(
-        path.stage_from_camera(static_cast<double>(view) / kViews).inverse());
+        path.board_from_camera(static_cast<double>(view) / kViews).inverse());
   }
   return walk;
 }

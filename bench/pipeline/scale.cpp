@@ -119,7 +119,7 @@ void run(const ScaleOptions& options) {
   int next_line = 60;
   for (int v = 0; v < options.views; ++v) {
     const Eigen::Isometry3d pose =
-        path.stage_from_camera(static_cast<double>(v) / options.views).inverse();
+        path.board_from_camera(static_cast<double>(v) / options.views).inverse();
     const double begin_ms = core::own_cpu_ms();
     core::project_vertices(points, walk.camera, pose, {}, options.threads, view);
     visibility->reject_occluded(walk.camera, pose, view);

@@ -93,7 +93,7 @@ void draw_tags(Page& page, const BoardPlan& plan, const BoardSheet& sheet) {
   }
 }
 
-/// Origin and axes of the stage, in a grey that no detector takes for an edge of a tag.
+/// Origin and axes of the board, in a grey that no detector takes for an edge of a tag.
 void draw_axes(Page& page, const BoardPlan& plan, const BoardSheet& sheet) {
   constexpr double length_mm = 12;
   constexpr double light = 0.7;

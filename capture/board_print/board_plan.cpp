@@ -61,7 +61,7 @@ void lay_tags(BoardPlan& plan) {
       if (!id) continue;
       Board::Tag tag;
       tag.size_m = plan.design.tag_mm / 1000;
-      tag.stage_from_tag.translation()
+      tag.board_from_tag.translation()
           << (column - (plan.columns - 1) / 2.0) * plan.pitch_mm / 1000,
           (row - (plan.rows - 1) / 2.0) * plan.pitch_mm / 1000, 0;
       plan.board.tags.emplace(*id, tag);
@@ -138,7 +138,7 @@ Board board_as_printed(const Board& board, double measured_mm) {
   Board printed = board;
   for (auto& [id, tag] : printed.tags) {
     tag.size_m *= scale;
-    tag.stage_from_tag.translation() *= scale;
+    tag.board_from_tag.translation() *= scale;
   }
   return printed;
 }

@@ -45,7 +45,7 @@ struct BoardSheet {
   int rows = 0;
 };
 
-/// A board laid out on paper: a grid of square cells with the stage's origin at its centre, tags
+/// A board laid out on paper: a grid of square cells with the board's origin at its centre, tags
 /// numbered row by row from the lower left. Sheets are cut half-way between two tags, so that
 /// no tag lies on two of them.
 struct BoardPlan {

@@ -38,7 +38,7 @@ class BoardFinder : public TargetFinder {
     if (tags.size() < kMinTags) return std::nullopt;
     TargetView view;
     for (const TagDetection& tag : tags) {
-      const auto corners = board_.tags.at(tag.id).corners_in_stage();
+      const auto corners = board_.tags.at(tag.id).corners_in_board();
       view.on_target.insert(view.on_target.end(), corners.begin(), corners.end());
       view.in_picture.insert(view.in_picture.end(), tag.corners_px.begin(), tag.corners_px.end());
     }

@@ -93,16 +93,16 @@ TagFamily known_family(const BoardReader& reader, const Board& board) {
 Board::Tag read_tag(const BoardReader& reader, const YAML::Node& node) {
   Board::Tag tag;
   tag.size_m = reader.size(node, "size");
-  tag.stage_from_tag.translation() = Eigen::Vector3d(
+  tag.board_from_tag.translation() = Eigen::Vector3d(
       reader.number(node, "x", 0), reader.number(node, "y", 0), reader.number(node, "z", 0));
   const Eigen::Quaterniond rotation(reader.number(node, "qw", 1), reader.number(node, "qx", 0),
                                     reader.number(node, "qy", 0), reader.number(node, "qz", 0));
   if (!(std::abs(rotation.norm() - 1) < 0.05)) reader.fail("a tag's quaternion has no unit length");
-  tag.stage_from_tag.linear() = rotation.normalized().toRotationMatrix();
+  tag.board_from_tag.linear() = rotation.normalized().toRotationMatrix();
   return tag;
 }
 
-/// apriltag_ros: every bundle is a list of tags in the common stage frame.
+/// apriltag_ros: every bundle is a list of tags in the common board frame.
 Board read_bundles(const BoardReader& reader) {
   Board board;
   board.family = reader.text("tag_family", "tag36h11");
@@ -148,7 +148,7 @@ Board read_aprilgrid(const BoardReader& reader) {
     for (int column = 0; column < columns; ++column) {
       Board::Tag tag;
       tag.size_m = size_m;
-      tag.stage_from_tag.translation() =
+      tag.board_from_tag.translation() =
           Eigen::Vector3d(column * pitch_m + size_m / 2, row * pitch_m + size_m / 2, 0);
       reader.add(board, first_id + row * columns + column, tag);
     }
@@ -158,10 +158,10 @@ Board read_aprilgrid(const BoardReader& reader) {
 
 }  // namespace
 
-std::array<Eigen::Vector3d, 4> Board::Tag::corners_in_stage() const {
+std::array<Eigen::Vector3d, 4> Board::Tag::corners_in_board() const {
   const double h = size_m / 2;
-  return {stage_from_tag * Eigen::Vector3d(-h, -h, 0), stage_from_tag * Eigen::Vector3d(h, -h, 0),
-          stage_from_tag * Eigen::Vector3d(h, h, 0), stage_from_tag * Eigen::Vector3d(-h, h, 0)};
+  return {board_from_tag * Eigen::Vector3d(-h, -h, 0), board_from_tag * Eigen::Vector3d(h, -h, 0),
+          board_from_tag * Eigen::Vector3d(h, h, 0), board_from_tag * Eigen::Vector3d(-h, h, 0)};
 }
 
 Board read_board(const std::filesystem::path& path) {
@@ -192,8 +192,8 @@ void write_board(const std::filesystem::path& path, const Board& board) {
   if (board.border_bits != 1) out << "border_bits: " << board.border_bits << '\n';
   out << "tag_bundles:\n  - name: stage\n    layout:\n";
   for (const auto& [id, tag] : board.tags) {
-    const Eigen::Vector3d t = tag.stage_from_tag.translation();
-    const Eigen::Quaterniond q(tag.stage_from_tag.linear());
+    const Eigen::Vector3d t = tag.board_from_tag.translation();
+    const Eigen::Quaterniond q(tag.board_from_tag.linear());
     out << "      - {id: " << id << ", size: " << tag.size_m << ", x: " << t.x() << ", y: " << t.y()
         << ", z: " << t.z() << ", qw: " << q.w() << ", qx: " << q.x() << ", qy: " << q.y()
         << ", qz: " << q.z() << "}\n";

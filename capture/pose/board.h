@@ -10,16 +10,16 @@
 
 namespace sheen::capture {
 
-/// A rigid arrangement of tags: the stage. Stage frame: metres, z up out of the printed plane.
+/// A rigid arrangement of tags: the board. Board frame: metres, z up out of the printed plane.
 struct Board {
   struct Tag {
     double size_m = 0;  ///< side of the black square
-    Eigen::Isometry3d stage_from_tag =
+    Eigen::Isometry3d board_from_tag =
         Eigen::Isometry3d::Identity();  ///< tag: x right, y up on the print
 
-    /// Corners of the black square in the stage frame: lower left, lower right, upper right,
+    /// Corners of the black square in the board frame: lower left, lower right, upper right,
     /// upper left of the tag as printed.
-    [[nodiscard]] std::array<Eigen::Vector3d, 4> corners_in_stage() const;
+    [[nodiscard]] std::array<Eigen::Vector3d, 4> corners_in_board() const;
   };
   std::string family;   ///< libapriltag family ("tag36h11") or OpenCV dictionary ("DICT_6X6_250")
   int border_bits = 1;  ///< width of the black border; 2 for Kalibr's aprilgrid

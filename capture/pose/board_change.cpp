@@ -21,7 +21,7 @@ const cv::Scalar kLevel(200, 120, 40);
 const cv::Scalar kHigher(50, 60, 210);
 const cv::Scalar kLower(70, 150, 40);
 
-/// Stage metres -> pixels, y up on the stage.
+/// Board metres -> pixels, y up on the board.
 struct Map {
   Eigen::Vector2d corner_m;  ///< lower left
   double scale = 1;
@@ -40,7 +40,7 @@ cv::Point subpixel(const cv::Point2d& p) {
 void draw_tag(cv::Mat& picture, const Map& map, const Board::Tag& tag, const cv::Scalar& colour,
               bool filled) {
   std::vector<cv::Point> outline;
-  for (const Eigen::Vector3d& corner : tag.corners_in_stage()) {
+  for (const Eigen::Vector3d& corner : tag.corners_in_board()) {
     outline.push_back(subpixel(map.at(corner)));
   }
   if (filled) {
@@ -78,7 +78,7 @@ struct Extent {
 Extent measure(const Board& board) {
   Extent extent;
   for (const auto& [id, tag] : board.tags) {
-    for (const Eigen::Vector3d& corner : tag.corners_in_stage()) {
+    for (const Eigen::Vector3d& corner : tag.corners_in_board()) {
       extent.box.extend(corner.head<2>());
     }
     extent.tag_m = std::max(extent.tag_m, tag.size_m);
@@ -88,11 +88,11 @@ Extent measure(const Board& board) {
 
 void draw_shift(cv::Mat& picture, const Map& map, const Board::Tag& tag, const TagChange& change,
                 double factor, double highest_m) {
-  const Eigen::Vector3d from = tag.stage_from_tag.translation();
+  const Eigen::Vector3d from = tag.board_from_tag.translation();
   cv::arrowedLine(picture, map.at(from), map.at(from + factor * change.shift_m),
                   colour_of(change.shift_m.z(), highest_m), 2, cv::LINE_AA, 0, 0.2);
   cv::putText(picture, fmt::format("{} {:+.2f}", change.id, 1e3 * change.shift_m.z()),
-              map.at(tag.corners_in_stage()[0]) + cv::Point2d(3, -4), cv::FONT_HERSHEY_SIMPLEX,
+              map.at(tag.corners_in_board()[0]) + cv::Point2d(3, -4), cv::FONT_HERSHEY_SIMPLEX,
               0.38, kInk, 1, cv::LINE_AA);
 }
 
@@ -108,8 +108,8 @@ std::vector<TagChange> compare_boards(const Board& before, const Board& after) {
   for (const auto& [id, tag] : before.tags) {
     const auto other = after.tags.find(id);
     if (other == after.tags.end()) continue;
-    const Eigen::Isometry3d& a = tag.stage_from_tag;
-    const Eigen::Isometry3d& b = other->second.stage_from_tag;
+    const Eigen::Isometry3d& a = tag.board_from_tag;
+    const Eigen::Isometry3d& b = other->second.board_from_tag;
     const double cosine = a.linear().col(2).dot(b.linear().col(2));
     changes.push_back(
         {id, b.translation() - a.translation(), std::acos(std::clamp(cosine, -1.0, 1.0))});

@@ -12,7 +12,7 @@ namespace sheen::capture {
 /// How one tag lies differently on two boards.
 struct TagChange {
   int id = 0;
-  Eigen::Vector3d shift_m;  ///< of its centre, stage frame
+  Eigen::Vector3d shift_m;  ///< of its centre, board frame
   double tilt_rad = 0;      ///< between its planes
 };
 

@@ -20,7 +20,7 @@ constexpr std::size_t kMinViews = 3;
 
 /// A view that poses over the given board, with the detections that carry it.
 struct PosedView {
-  Parameters camera_from_stage;
+  Parameters camera_from_board;
   std::vector<TagDetection> tags;
 };
 
@@ -31,7 +31,7 @@ std::vector<PosedView> pose_views(const Board& board, const core::CameraModel& c
   for (const auto& detections : views) {
     const auto pose = estimate_joint_pose(board, camera, detections);
     if (!pose || pose->tag_ids.size() < 2) continue;
-    PosedView view{to_parameters(pose->camera_from_stage), {}};
+    PosedView view{to_parameters(pose->camera_from_board), {}};
     for (const TagDetection& tag : detections) {
       if (board.tags.contains(tag.id)) view.tags.push_back(tag);
     }
@@ -67,7 +67,7 @@ class Adjustment {
     for (PosedView& view : views) {
       for (const TagDetection& tag : view.tags) {
         problem_.AddResidualBlock(tag_residual(camera, tag, board.tags.at(tag.id).size_m),
-                                  new ceres::HuberLoss(kHuberPx), view.camera_from_stage.data(),
+                                  new ceres::HuberLoss(kHuberPx), view.camera_from_board.data(),
                                   tags[tag.id].data());
       }
     }
@@ -78,7 +78,7 @@ class Adjustment {
     for (PosedView& view : views) {
       for (const TagDetection& tag : view.tags) {
         problem_.AddResidualBlock(tag_and_lens_residual(tag, board.tags.at(tag.id).size_m),
-                                  new ceres::HuberLoss(kHuberPx), view.camera_from_stage.data(),
+                                  new ceres::HuberLoss(kHuberPx), view.camera_from_board.data(),
                                   tags[tag.id].data(), lens.data());
       }
     }
@@ -133,8 +133,8 @@ Eigen::Affine3d given_from_refined(const Board& given, const Board& refined,
   Eigen::Matrix3Xd to(3, from.cols());
   Eigen::Index column = 0;
   for (const auto& [id, unused] : moved) {
-    const auto source = refined.tags.at(id).corners_in_stage();
-    const auto target = given.tags.at(id).corners_in_stage();
+    const auto source = refined.tags.at(id).corners_in_board();
+    const auto target = given.tags.at(id).corners_in_board();
     for (std::size_t c = 0; c < 4; ++c, ++column) {
       from.col(column) = source[c];
       to.col(column) = target[c];
@@ -147,8 +147,8 @@ double median_shift_m(const Board& given, const Board& refined,
                       const std::map<int, Parameters>& moved) {
   std::vector<double> shifts_m;
   for (const auto& [id, unused] : moved) {
-    shifts_m.push_back((given.tags.at(id).stage_from_tag.translation() -
-                        refined.tags.at(id).stage_from_tag.translation())
+    shifts_m.push_back((given.tags.at(id).board_from_tag.translation() -
+                        refined.tags.at(id).board_from_tag.translation())
                            .norm());
   }
   return core::upper_median(shifts_m);
@@ -165,13 +165,13 @@ void free_tags(Adjustment& adjustment, std::map<int, Parameters>& tags) {
 /// Puts the moved tags into the board and lays them on the given ones, so that no single tag
 /// decides the frame.
 void lay_on_given(const Board& given, const std::map<int, Parameters>& tags, Board& refined) {
-  for (const auto& [id, tag] : tags) refined.tags.at(id).stage_from_tag = to_isometry(tag);
+  for (const auto& [id, tag] : tags) refined.tags.at(id).board_from_tag = to_isometry(tag);
   const Eigen::Affine3d back = given_from_refined(given, refined, tags);
   const double scale = std::cbrt(back.linear().determinant());
   for (const auto& [id, unused] : tags) {
     auto& tag = refined.tags.at(id);
-    tag.stage_from_tag.translation() = back * tag.stage_from_tag.translation();
-    tag.stage_from_tag.linear() = back.linear() / scale * tag.stage_from_tag.linear();
+    tag.board_from_tag.translation() = back * tag.board_from_tag.translation();
+    tag.board_from_tag.linear() = back.linear() / scale * tag.board_from_tag.linear();
     tag.size_m *= scale;
   }
 }
@@ -188,7 +188,7 @@ std::optional<BoardRefinement> refine_board(const Board& board, const core::Came
   std::map<int, Parameters> tags;
   for (const auto& view : posed) {
     for (const TagDetection& tag : view.tags) {
-      tags[tag.id] = to_parameters(board.tags.at(tag.id).stage_from_tag);
+      tags[tag.id] = to_parameters(board.tags.at(tag.id).board_from_tag);
     }
   }
   Adjustment adjustment(board, camera, posed, tags);

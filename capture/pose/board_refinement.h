@@ -26,7 +26,7 @@ enum class LensRefinement { off, on };
 
 /// Joint refinement of where the tags lie and of every view's pose (bundle adjustment over tag
 /// corners, Huber loss). Each tag stays a square but may lie anywhere and at any tilt: paper curls.
-/// All sizes change by one common factor. The stage frame and its scale stay: the refined tags are
+/// All sizes change by one common factor. The board frame and its scale stay: the refined tags are
 /// laid on the given ones by the best similarity, so that T_stage_object keeps its meaning. `views`
 /// holds the tags detected in each picture, ids unique within one. With the lens, radial terms
 /// beyond the second move only where `camera` has them; its views should be tilted by 15 degrees

@@ -20,15 +20,15 @@ void transform(const T* target_from_source, const T* point, T* result) {
 /// Calls `use(corner, point in the camera frame)` for the four corners of a tag; false when one of
 /// the calls says so.
 template <typename T, typename Use>
-bool for_each_corner(double half_m, const T* camera_from_stage, const T* stage_from_tag,
+bool for_each_corner(double half_m, const T* camera_from_board, const T* board_from_tag,
                      const Use& use) {
   constexpr std::array<std::array<int, 2>, 4> signs{{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
   for (std::size_t c = 0; c < 4; ++c) {
     const T in_tag[3] = {T(signs[c][0] * half_m), T(signs[c][1] * half_m), T(0)};
-    T in_stage[3];
-    transform(stage_from_tag, in_tag, in_stage);
+    T in_board[3];
+    transform(board_from_tag, in_tag, in_board);
     T in_camera[3];
-    transform(camera_from_stage, in_stage, in_camera);
+    transform(camera_from_board, in_board, in_camera);
     if (!use(c, in_camera)) return false;
   }
   return true;
@@ -40,8 +40,8 @@ class TagResidual {
       : camera_(camera), seen_(seen), half_m_(size_m / 2) {}
 
   template <typename T>
-  bool operator()(const T* camera_from_stage, const T* stage_from_tag, T* residuals) const {
-    return for_each_corner(half_m_, camera_from_stage, stage_from_tag,
+  bool operator()(const T* camera_from_board, const T* board_from_tag, T* residuals) const {
+    return for_each_corner(half_m_, camera_from_board, board_from_tag,
                            [&](std::size_t c, const T* in_camera) {
                              if (!project(in_camera, residuals + 2 * c)) return false;
                              residuals[2 * c] -= seen_.corners_px[c].x();
@@ -84,9 +84,9 @@ class TagAndLensResidual {
   TagAndLensResidual(const TagDetection& seen, double size_m) : seen_(seen), half_m_(size_m / 2) {}
 
   template <typename T>
-  bool operator()(const T* camera_from_stage, const T* stage_from_tag, const T* lens,
+  bool operator()(const T* camera_from_board, const T* board_from_tag, const T* lens,
                   T* residuals) const {
-    return for_each_corner(half_m_, camera_from_stage, stage_from_tag,
+    return for_each_corner(half_m_, camera_from_board, board_from_tag,
                            [&](std::size_t c, const T* in_camera) {
                              if (!(in_camera[2] > T(0))) return false;
                              project(lens, in_camera, residuals + 2 * c);

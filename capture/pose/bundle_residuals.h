@@ -27,12 +27,12 @@ LensParameters lens_parameters(const core::CameraModel& camera);
 core::CameraModel camera_with(const LensParameters& lens, const core::CameraModel& camera);
 
 /// Distance of the four corners of one tag in one view from where the layout puts them, px: 8
-/// residuals of camera_from_stage and stage_from_tag (Parameters each). The arguments must outlive
+/// residuals of camera_from_board and board_from_tag (Parameters each). The arguments must outlive
 /// the result, which the caller owns.
 ceres::CostFunction* tag_residual(const core::CameraModel& camera, const TagDetection& seen,
                                   double size_m);
 
-/// The same of camera_from_stage, stage_from_tag and the lens (LensParameters).
+/// The same of camera_from_board, board_from_tag and the lens (LensParameters).
 ceres::CostFunction* tag_and_lens_residual(const TagDetection& seen, double size_m);
 
 }  // namespace sheen::capture

@@ -73,15 +73,15 @@ std::optional<EdgeAlignment> align_edges(const std::vector<EdgeObservation>& obs
   return EdgeAlignment{twist, x[6], core::upper_median(room)};
 }
 
-Eigen::Isometry3d moved(const Eigen::Isometry3d& camera_from_stage, const Twist& twist) {
+Eigen::Isometry3d moved(const Eigen::Isometry3d& camera_from_board, const Twist& twist) {
   const double angle = twist.head<3>().norm();
   const Eigen::Vector3d axis =
       angle > 0 ? Eigen::Vector3d(twist.head<3>() / angle) : Eigen::Vector3d::UnitX();
   const Eigen::Quaterniond turn(Eigen::AngleAxisd(angle, axis));
   Eigen::Isometry3d result = Eigen::Isometry3d::Identity();
   result.linear() =
-      (turn * Eigen::Quaterniond(camera_from_stage.linear())).normalized().toRotationMatrix();
-  result.translation() = turn * camera_from_stage.translation() + twist.tail<3>();
+      (turn * Eigen::Quaterniond(camera_from_board.linear())).normalized().toRotationMatrix();
+  result.translation() = turn * camera_from_board.translation() + twist.tail<3>();
   return result;
 }
 

@@ -13,11 +13,11 @@ using Twist = Eigen::Matrix<double, 6, 1>;  ///< rotation vector (rad), then tra
 
 /// Where an edge of the print was found, against where the present pose puts it.
 struct EdgeObservation {
-  Twist outward_by_twist;  ///< how far the edge moves out of its tag with the stage, px
+  Twist outward_by_twist;  ///< how far the edge moves out of its tag with the board, px
   double offset_px = 0;    ///< found this far outwards
 };
 
-/// Small motion of the stage in the camera frame, and what is left.
+/// Small motion of the board in the camera frame, and what is left.
 struct EdgeAlignment {
   Twist twist = Twist::Zero();
   double swell_px = 0;  ///< by which all edges lie outwards alike: exposure, ink, blur
@@ -29,7 +29,7 @@ struct EdgeAlignment {
 std::optional<EdgeAlignment> align_edges(const std::vector<EdgeObservation>& observations,
                                          double finest_scale_px, std::vector<double>& room);
 
-/// exp(twist) * camera_from_stage, its rotation orthonormal.
-Eigen::Isometry3d moved(const Eigen::Isometry3d& camera_from_stage, const Twist& twist);
+/// exp(twist) * camera_from_board, its rotation orthonormal.
+Eigen::Isometry3d moved(const Eigen::Isometry3d& camera_from_board, const Twist& twist);
 
 }  // namespace sheen::capture

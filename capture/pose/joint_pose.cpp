@@ -14,7 +14,7 @@ namespace {
 
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 
-/// Rotation vector and translation of camera_from_stage, as OpenCV counts them.
+/// Rotation vector and translation of camera_from_board, as OpenCV counts them.
 struct Pose {
   cv::Vec3d rotation;
   cv::Vec3d translation;
@@ -22,7 +22,7 @@ struct Pose {
 
 struct Correspondences {
   std::vector<int> tag_ids;          ///< one per four corners
-  std::vector<cv::Point3d> stage;    ///< metres
+  std::vector<cv::Point3d> board;    ///< metres
   std::vector<cv::Point2d> picture;  ///< px
 };
 
@@ -59,9 +59,9 @@ Correspondences match(const Board& board, const std::vector<TagDetection>& detec
     const auto tag = board.tags.find(detection.id);
     if (tag == board.tags.end()) continue;
     matches.tag_ids.push_back(detection.id);
-    const auto corners = tag->second.corners_in_stage();
+    const auto corners = tag->second.corners_in_board();
     for (std::size_t c = 0; c < 4; ++c) {
-      matches.stage.emplace_back(corners[c].x(), corners[c].y(), corners[c].z());
+      matches.board.emplace_back(corners[c].x(), corners[c].y(), corners[c].z());
       matches.picture.emplace_back(detection.corners_px[c].x(), detection.corners_px[c].y());
     }
   }
@@ -74,7 +74,7 @@ Correspondences keep_tags(const Correspondences& all, const std::vector<bool>& k
     if (!keep[i]) continue;
     kept.tag_ids.push_back(all.tag_ids[i]);
     for (std::size_t c = 4 * i; c < 4 * i + 4; ++c) {
-      kept.stage.push_back(all.stage[c]);
+      kept.board.push_back(all.board[c]);
       kept.picture.push_back(all.picture[c]);
     }
   }
@@ -84,13 +84,13 @@ Correspondences keep_tags(const Correspondences& all, const std::vector<bool>& k
 /// Distance of every corner from its projection, px; infinite behind the camera.
 std::vector<double> residuals(const Correspondences& matches, const Lens& lens, const Pose& pose) {
   std::vector<cv::Point2d> projected;
-  cv::projectPoints(matches.stage, pose.rotation, pose.translation, lens.K, lens.distortion,
+  cv::projectPoints(matches.board, pose.rotation, pose.translation, lens.K, lens.distortion,
                     projected);
-  const Eigen::Isometry3d camera_from_stage = to_isometry(pose);
+  const Eigen::Isometry3d camera_from_board = to_isometry(pose);
   std::vector<double> distances(projected.size());
   for (std::size_t i = 0; i < projected.size(); ++i) {
-    const cv::Point3d& p = matches.stage[i];
-    const double depth = (camera_from_stage * Eigen::Vector3d(p.x, p.y, p.z)).z();
+    const cv::Point3d& p = matches.board[i];
+    const double depth = (camera_from_board * Eigen::Vector3d(p.x, p.y, p.z)).z();
     distances[i] = depth > 0 ? cv::norm(projected[i] - matches.picture[i])
                              : std::numeric_limits<double>::infinity();
   }
@@ -112,9 +112,9 @@ double bounded_cost(const std::vector<double>& distances) {
   return cost;
 }
 
-/// Adds the solutions of one of OpenCV's solvers. `stage_from_points` brings its frame to ours.
+/// Adds the solutions of one of OpenCV's solvers. `board_from_points` brings its frame to ours.
 void add_starts(const std::vector<cv::Point3d>& points, const std::vector<cv::Point2d>& picture,
-                const Lens& lens, int solver, const Eigen::Isometry3d& stage_from_points,
+                const Lens& lens, int solver, const Eigen::Isometry3d& board_from_points,
                 std::vector<Pose>& starts) {
   std::vector<cv::Mat> rotations;
   std::vector<cv::Mat> translations;
@@ -127,7 +127,7 @@ void add_starts(const std::vector<cv::Point3d>& points, const std::vector<cv::Po
   for (std::size_t i = 0; i < rotations.size(); ++i) {
     const Pose pose{rotations[i], translations[i]};
     if (!cv::checkRange(pose.rotation) || !cv::checkRange(pose.translation)) continue;
-    starts.push_back(to_pose(to_isometry(pose) * stage_from_points.inverse()));
+    starts.push_back(to_pose(to_isometry(pose) * board_from_points.inverse()));
   }
 }
 
@@ -137,35 +137,35 @@ void add_planar_starts(const Correspondences& matches, std::size_t first, std::s
   // Lay a plane through the points.
   Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(count));
   for (std::size_t i = 0; i < count; ++i) {
-    const cv::Point3d& p = matches.stage[first + i];
+    const cv::Point3d& p = matches.board[first + i];
     points.col(static_cast<Eigen::Index>(i)) = Eigen::Vector3d(p.x, p.y, p.z);
   }
   const Eigen::Vector3d centre = points.rowwise().mean();
   const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(points.colwise() - centre, Eigen::ComputeFullU);
   if (svd.singularValues()[2] > 0.1 * svd.singularValues()[1]) return;
-  Eigen::Isometry3d stage_from_plane = Eigen::Isometry3d::Identity();
-  stage_from_plane.linear() = svd.matrixU();
-  if (svd.matrixU().determinant() < 0) stage_from_plane.linear().col(2) *= -1;
-  stage_from_plane.translation() = centre;
+  Eigen::Isometry3d board_from_plane = Eigen::Isometry3d::Identity();
+  board_from_plane.linear() = svd.matrixU();
+  if (svd.matrixU().determinant() < 0) board_from_plane.linear().col(2) *= -1;
+  board_from_plane.translation() = centre;
 
   // Solve in that plane.
   std::vector<cv::Point3d> flat;
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    const Eigen::Vector3d p = stage_from_plane.inverse() * points.col(i);
+    const Eigen::Vector3d p = board_from_plane.inverse() * points.col(i);
     flat.emplace_back(p.x(), p.y(), 0);
   }
   const auto begin = matches.picture.begin() + static_cast<std::ptrdiff_t>(first);
   const std::vector<cv::Point2d> picture(begin, begin + static_cast<std::ptrdiff_t>(count));
-  add_starts(flat, picture, lens, cv::SOLVEPNP_IPPE, stage_from_plane, starts);
+  add_starts(flat, picture, lens, cv::SOLVEPNP_IPPE, board_from_plane, starts);
 }
 
 /// All corners at once, and each tag on its own in case a few tags spoil the whole.
 std::vector<Pose> find_starts(const Correspondences& matches, const Lens& lens) {
   std::vector<Pose> starts;
-  add_starts(matches.stage, matches.picture, lens, cv::SOLVEPNP_SQPNP,
+  add_starts(matches.board, matches.picture, lens, cv::SOLVEPNP_SQPNP,
              Eigen::Isometry3d::Identity(), starts);
-  add_planar_starts(matches, 0, matches.stage.size(), lens, starts);
-  for (std::size_t first = 0; first < matches.stage.size(); first += 4) {
+  add_planar_starts(matches, 0, matches.board.size(), lens, starts);
+  for (std::size_t first = 0; first < matches.board.size(); first += 4) {
     add_planar_starts(matches, first, 4, lens, starts);
   }
   return starts;
@@ -198,7 +198,7 @@ Pose refine(const Correspondences& matches, const Lens& lens, Pose pose, double 
   std::vector<cv::Point2d> projected;
   cv::Mat J;
   for (int step = 0; step < max_steps && std::isfinite(cost); ++step) {
-    cv::projectPoints(matches.stage, pose.rotation, pose.translation, lens.K, lens.distortion,
+    cv::projectPoints(matches.board, pose.rotation, pose.translation, lens.K, lens.distortion,
                       projected, J);
     const Vector6d delta = solve_step(J, projected, matches, huber_px, damping);
     if (!delta.allFinite()) break;
@@ -289,7 +289,7 @@ std::optional<JointPose> estimate_joint_pose(const Board& board, const core::Cam
   // Report what the remaining corners say.
   double sum = 0;
   for (const double distance : residuals(matches, lens, pose)) sum += distance * distance;
-  const double rms = std::sqrt(sum / static_cast<double>(matches.stage.size()));
+  const double rms = std::sqrt(sum / static_cast<double>(matches.board.size()));
   if (!std::isfinite(rms)) return std::nullopt;
   return JointPose{to_isometry(pose), rms, matches.tag_ids};
 }

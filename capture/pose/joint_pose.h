@@ -14,7 +14,7 @@ namespace sheen::capture {
 
 /// One pose over all corners of all known tags.
 struct JointPose {
-  Eigen::Isometry3d camera_from_stage = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
   double rms_px = 0;         ///< root mean square over the corners of the tags in `tag_ids`
   std::vector<int> tag_ids;  ///< tags that carry the pose, ascending
 };

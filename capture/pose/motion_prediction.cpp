@@ -23,13 +23,13 @@ Eigen::Isometry3d orthonormal(const Eigen::Isometry3d& transform) {
 
 }  // namespace
 
-void MotionPrediction::note(const Frame& frame, const Eigen::Isometry3d& camera_from_stage) {
+void MotionPrediction::note(const Frame& frame, const Eigen::Isometry3d& camera_from_board) {
   Known now;
   now.time_s = frame.time_s;
   now.index = frame.index;
-  now.camera_from_stage = camera_from_stage;
+  now.camera_from_board = camera_from_board;
   if (last_) {
-    now.motion = camera_from_stage * last_->camera_from_stage.inverse();
+    now.motion = camera_from_board * last_->camera_from_board.inverse();
     now.interval_s = frame.time_s - last_->time_s;
     now.frames = frame.index - last_->index;
   }
@@ -38,7 +38,7 @@ void MotionPrediction::note(const Frame& frame, const Eigen::Isometry3d& camera_
 
 std::optional<Eigen::Isometry3d> MotionPrediction::last() const {
   if (!last_) return std::nullopt;
-  return last_->camera_from_stage;
+  return last_->camera_from_board;
 }
 
 std::optional<Eigen::Isometry3d> MotionPrediction::predict(const Frame& frame) const {
@@ -53,7 +53,7 @@ std::optional<Eigen::Isometry3d> MotionPrediction::predict(const Frame& frame) c
     share = static_cast<double>(frames) / last_->frames;
   }
   const Eigen::Isometry3d motion = part_of(last_->motion, std::clamp(share, 0.0, longest));
-  return orthonormal(motion * last_->camera_from_stage);
+  return orthonormal(motion * last_->camera_from_board);
 }
 
 }  // namespace sheen::capture

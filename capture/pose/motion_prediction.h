@@ -13,19 +13,19 @@ namespace sheen::capture {
 class MotionPrediction {
  public:
   /// A frame and its pose, in the order of the recording.
-  void note(const Frame& frame, const Eigen::Isometry3d& camera_from_stage);
+  void note(const Frame& frame, const Eigen::Isometry3d& camera_from_board);
 
   /// The pose noted last: where the camera is if it has stopped.
   [[nodiscard]] std::optional<Eigen::Isometry3d> last() const;
 
-  /// camera_from_stage, its rotation orthonormal; no value when no pose is known.
+  /// camera_from_board, its rotation orthonormal; no value when no pose is known.
   [[nodiscard]] std::optional<Eigen::Isometry3d> predict(const Frame& frame) const;
 
  private:
   struct Known {
     double time_s = 0;
     int index = 0;
-    Eigen::Isometry3d camera_from_stage = Eigen::Isometry3d::Identity();
+    Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
     Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();  ///< from the pose before to this
     double interval_s = 0;                                     ///< it took, 0 when unknown
     int frames = 1;                                            ///< it took

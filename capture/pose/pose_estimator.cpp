@@ -39,7 +39,7 @@ class TagPoseEstimator : public PoseEstimator {
     const PoseResult detected = detect(grey);
     const auto* start = std::get_if<FramePose>(&detected);
     if (start == nullptr) return detected;
-    const auto pose = tracker_.track(grey, start->camera_from_stage);
+    const auto pose = tracker_.track(grey, start->camera_from_board);
     if (pose && pose->tags >= start->tags && pose->reprojection_px <= gate_.max_reprojection_px) {
       return accept(frame, *pose);
     }
@@ -64,7 +64,7 @@ class TagPoseEstimator : public PoseEstimator {
     if (!pose || pose->rms_px > gate_.max_reprojection_px) return PoseRejection::reprojection;
     const int used = static_cast<int>(pose->tag_ids.size());
     if (used < gate_.min_tags) return PoseRejection::too_few_tags;
-    return FramePose{pose->camera_from_stage, used, pose->rms_px, blur_px};
+    return FramePose{pose->camera_from_board, used, pose->rms_px, blur_px};
   }
 
   /// Half of the tags lost at once may mean that the rest was mistaken for others.
@@ -74,7 +74,7 @@ class TagPoseEstimator : public PoseEstimator {
   }
 
   PoseResult accept(const Frame& frame, const TrackedPose& tracked) {
-    const FramePose pose{tracked.camera_from_stage, tracked.tags, tracked.reprojection_px,
+    const FramePose pose{tracked.camera_from_board, tracked.tags, tracked.reprojection_px,
                          tracked.blur_px};
     note(frame, pose);
     if (pose.blur_px > gate_.max_blur_px) return PoseRejection::blur;
@@ -82,7 +82,7 @@ class TagPoseEstimator : public PoseEstimator {
   }
 
   void note(const Frame& frame, const FramePose& pose) {
-    motion_.note(frame, pose.camera_from_stage);
+    motion_.note(frame, pose.camera_from_board);
     last_tags_ = pose.tags;
   }
 
@@ -103,9 +103,9 @@ class RecordedPoseEstimator : public PoseEstimator {
   }
 
   PoseResult estimate(const Frame& frame) override {
-    const auto stage_from_camera = trajectory_.stage_from_camera(frame, fps_);
-    if (!stage_from_camera) return PoseRejection::no_pose_in_file;
-    return FramePose{stage_from_camera->inverse(), 0, 0, 0};
+    const auto board_from_camera = trajectory_.board_from_camera(frame, fps_);
+    if (!board_from_camera) return PoseRejection::no_pose_in_file;
+    return FramePose{board_from_camera->inverse(), 0, 0, 0};
   }
 
  private:

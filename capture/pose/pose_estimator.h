@@ -20,7 +20,7 @@ std::string_view name_of(PoseRejection rejection);
 
 /// Pose of the camera for one frame, with what speaks for it.
 struct FramePose {
-  Eigen::Isometry3d camera_from_stage = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
   int tags = 0;                ///< tags that carried the estimate; 0 for poses from a file
   double reprojection_px = 0;  ///< root mean square over the corners that carried it
   double blur_px = 0;          ///< width of the tags' edges (10-90 %), 0 for poses from a file

@@ -16,7 +16,7 @@ namespace sheen::capture {
 struct TagDetection {
   int id = 0;
   /// Corners of the black square: lower left, lower right, upper right, upper left of the tag as
-  /// printed (the order of Board::Tag::corners_in_stage). Pixel (0, 0) is the first pixel's centre.
+  /// printed (the order of Board::Tag::corners_in_board). Pixel (0, 0) is the first pixel's centre.
   std::array<Eigen::Vector2d, 4> corners_px;
   double quality = 0;  ///< larger is surer; comparable within one family only
 };

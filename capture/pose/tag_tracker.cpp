@@ -23,7 +23,7 @@ double tag_rms_px(std::vector<MeasuredCorner>::const_iterator first,
 TagTracker::TagTracker(const Board& board, const core::CameraModel& camera, const TagFamily& family)
     : camera_(camera), search_(camera) {
   for (auto& [id, pattern] : find_tag_patterns(family, board)) {
-    tags_.push_back({id, board.tags.at(id).corners_in_stage(), family.modules, std::move(pattern)});
+    tags_.push_back({id, board.tags.at(id).corners_in_board(), family.modules, std::move(pattern)});
   }
 }
 
@@ -33,71 +33,71 @@ std::optional<TrackedPose> TagTracker::track(const cv::Mat& grey,
   if (grey.cols != camera_.width_px() || grey.rows != camera_.height_px()) return std::nullopt;
 
   // Come near, and keep the tags whose codes are where they should be.
-  Eigen::Isometry3d camera_from_stage = predicted;
-  if (!approach(grey, camera_from_stage)) return std::nullopt;
-  look(camera_from_stage);
+  Eigen::Isometry3d camera_from_board = predicted;
+  if (!approach(grey, camera_from_board)) return std::nullopt;
+  look(camera_from_board);
   std::erase_if(views_, [&](const TagView& view) {
     return view.pattern_correlation(camera_, grey) < min_correlation;
   });
 
   // Align with their edges.
   const auto blur_px = search_.measure_widths(grey, views_);
-  if (!blur_px || !align(grey, camera_from_stage)) return std::nullopt;
+  if (!blur_px || !align(grey, camera_from_board)) return std::nullopt;
 
   // Say how well their corners fit.
-  measure_corners(camera_from_stage);
-  TrackedPose pose{camera_from_stage, drop_misfits(), 0, *blur_px};
+  measure_corners(camera_from_board);
+  TrackedPose pose{camera_from_board, drop_misfits(), 0, *blur_px};
   if (corners_.empty()) return std::nullopt;
   pose.reprojection_px = tag_rms_px(corners_.begin(), corners_.end());
   return pose;
 }
 
-void TagTracker::look(const Eigen::Isometry3d& camera_from_stage) {
+void TagTracker::look(const Eigen::Isometry3d& camera_from_board) {
   views_.clear();
   for (const BoardTag& tag : tags_) {
-    if (const auto view = TagView::find(tag, camera_, camera_from_stage)) views_.push_back(*view);
+    if (const auto view = TagView::find(tag, camera_, camera_from_board)) views_.push_back(*view);
   }
 }
 
-void TagTracker::look_again(const Eigen::Isometry3d& camera_from_stage) {
+void TagTracker::look_again(const Eigen::Isometry3d& camera_from_board) {
   for (TagView& view : views_) {
-    if (const auto moved_view = TagView::find(view.tag(), camera_, camera_from_stage)) {
+    if (const auto moved_view = TagView::find(view.tag(), camera_, camera_from_board)) {
       view = *moved_view;
     }
   }
 }
 
-bool TagTracker::approach(const cv::Mat& grey, Eigen::Isometry3d& camera_from_stage) {
+bool TagTracker::approach(const cv::Mat& grey, Eigen::Isometry3d& camera_from_board) {
   constexpr std::array<double, 4> reach_modules{1.6, 1.0, 0.6, 0.6};
   constexpr double scale_px = 0.5;  // steps are found to about a third of a pixel
   constexpr double near_px = 0.6;
   for (const double reach : reach_modules) {
-    look(camera_from_stage);
+    look(camera_from_board);
     search_.find_steps(grey, views_, reach);
     const auto alignment = align_edges(search_.observations(), scale_px, room_);
     if (!alignment) return false;
-    camera_from_stage = moved(camera_from_stage, alignment->twist);
+    camera_from_board = moved(camera_from_board, alignment->twist);
     if (alignment->moved_px < near_px) return true;
   }
   return false;
 }
 
-bool TagTracker::align(const cv::Mat& grey, Eigen::Isometry3d& camera_from_stage) {
+bool TagTracker::align(const cv::Mat& grey, Eigen::Isometry3d& camera_from_board) {
   constexpr int max_rounds = 4;
   constexpr double scale_px = 0.1;    // positions of a clean edge scatter by less
   constexpr double settled_px = 0.1;  // profiles are centred: another round would change nothing
   for (int round = 0; round < max_rounds; ++round) {
-    look_again(camera_from_stage);
+    look_again(camera_from_board);
     search_.find_sides(grey, views_);
     const auto alignment = align_edges(search_.observations(), scale_px, room_);
     if (!alignment) return false;
-    camera_from_stage = moved(camera_from_stage, alignment->twist);
+    camera_from_board = moved(camera_from_board, alignment->twist);
     if (alignment->moved_px < settled_px) return true;
   }
   return false;
 }
 
-void TagTracker::measure_corners(const Eigen::Isometry3d& camera_from_stage) {
+void TagTracker::measure_corners(const Eigen::Isometry3d& camera_from_board) {
   // Let the sides of each tag meet, against where it was when they were measured.
   corners_.clear();
   const auto& sides = search_.sides();
@@ -106,7 +106,7 @@ void TagTracker::measure_corners(const Eigen::Isometry3d& camera_from_stage) {
     std::array<const EdgeSearch::Side*, 4> found{};
     for (; i < sides.size() && sides[i].view == view; ++i) found[sides[i].side] = &sides[i];
     const TagView& seen = views_[view];
-    const auto fitted = TagView::find(seen.tag(), camera_, camera_from_stage);
+    const auto fitted = TagView::find(seen.tag(), camera_, camera_from_board);
     if (!fitted) continue;
     for (std::size_t c = 0; c < 4; ++c) {
       const EdgeSearch::Side* before = found[(c + 3) % 4];

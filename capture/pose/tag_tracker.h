@@ -25,7 +25,7 @@ struct MeasuredCorner {
 
 /// Pose from the edges of all tags, with what speaks for it.
 struct TrackedPose {
-  Eigen::Isometry3d camera_from_stage = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
   int tags = 0;                ///< tags whose code was read and that fit the pose
   double reprojection_px = 0;  ///< root mean square over the corners of those tags
   double blur_px = 0;          ///< as `tag_edge_width` measures it
@@ -47,11 +47,11 @@ class TagTracker {
   [[nodiscard]] const std::vector<MeasuredCorner>& corners() const { return corners_; }
 
  private:
-  void look(const Eigen::Isometry3d& camera_from_stage);
-  void look_again(const Eigen::Isometry3d& camera_from_stage);
-  bool approach(const cv::Mat& grey, Eigen::Isometry3d& camera_from_stage);
-  bool align(const cv::Mat& grey, Eigen::Isometry3d& camera_from_stage);
-  void measure_corners(const Eigen::Isometry3d& camera_from_stage);
+  void look(const Eigen::Isometry3d& camera_from_board);
+  void look_again(const Eigen::Isometry3d& camera_from_board);
+  bool approach(const cv::Mat& grey, Eigen::Isometry3d& camera_from_board);
+  bool align(const cv::Mat& grey, Eigen::Isometry3d& camera_from_board);
+  void measure_corners(const Eigen::Isometry3d& camera_from_board);
   int drop_misfits();
 
   core::CameraModel camera_;

@@ -44,12 +44,12 @@ std::optional<double> brightness(const cv::Mat& grey, const Eigen::Vector2d& px)
 }  // namespace
 
 std::optional<TagView> TagView::find(const BoardTag& tag, const core::CameraModel& camera,
-                                     const Eigen::Isometry3d& camera_from_stage) {
+                                     const Eigen::Isometry3d& camera_from_board) {
   // Place the corners.
   TagView view;
   view.tag_ = &tag;
   for (std::size_t c = 0; c < 4; ++c) {
-    view.corners_in_camera_[c] = camera_from_stage * tag.corners_in_stage[c];
+    view.corners_in_camera_[c] = camera_from_board * tag.corners_in_board[c];
     const auto px = camera.project(view.corners_in_camera_[c]);
     if (!px) return std::nullopt;
     view.corners_px_[c] = *px;

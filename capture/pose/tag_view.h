@@ -16,7 +16,7 @@ namespace sheen::capture {
 /// A tag of the board, ready to be looked for.
 struct BoardTag {
   int id = 0;
-  std::array<Eigen::Vector3d, 4> corners_in_stage;  ///< in Board::Tag's order
+  std::array<Eigen::Vector3d, 4> corners_in_board;  ///< in Board::Tag's order
   int modules = 8;                                  ///< bits across the black square
   TagPattern pattern;
 };
@@ -25,7 +25,7 @@ struct BoardTag {
 struct EdgePoint {
   Eigen::Vector2d px;
   Eigen::Vector2d outward;  ///< unit vector across the edge, out of the tag
-  Twist outward_by_twist;   ///< how far the edge moves outwards with the stage, px
+  Twist outward_by_twist;   ///< how far the edge moves outwards with the board, px
 };
 
 /// A tag of the board where a pose puts it in the picture, through the lens.
@@ -33,7 +33,7 @@ class TagView {
  public:
   /// No value for tags behind the camera, turned away, outside the picture or too small to follow.
   static std::optional<TagView> find(const BoardTag& tag, const core::CameraModel& camera,
-                                     const Eigen::Isometry3d& camera_from_stage);
+                                     const Eigen::Isometry3d& camera_from_board);
 
   [[nodiscard]] const BoardTag& tag() const { return *tag_; }
   [[nodiscard]] const std::array<Eigen::Vector2d, 4>& corners_px() const { return corners_px_; }

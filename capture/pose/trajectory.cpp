@@ -56,8 +56,8 @@ Trajectory::Entry parse_line(const std::filesystem::path& path, int line, std::s
   // Files carry few digits; anything far from length one is something else than a rotation.
   if (!(std::abs(rotation.norm() - 1) < 0.05)) fail(path, line, "holds no unit quaternion");
   Trajectory::Entry entry{n[0], Eigen::Isometry3d::Identity()};
-  entry.stage_from_camera.linear() = rotation.normalized().toRotationMatrix();
-  entry.stage_from_camera.translation() = position;
+  entry.board_from_camera.linear() = rotation.normalized().toRotationMatrix();
+  entry.board_from_camera.translation() = position;
   return entry;
 }
 
@@ -70,7 +70,7 @@ Trajectory::Trajectory(std::vector<Entry> entries) : entries_(std::move(entries)
                                     [](const Entry& e) { return is_integer(e.stamp); });
 }
 
-std::optional<Eigen::Isometry3d> Trajectory::stage_from_camera(const Frame& frame,
+std::optional<Eigen::Isometry3d> Trajectory::board_from_camera(const Frame& frame,
                                                                double fps) const {
   assert(fps > 0);
   if (entries_.empty()) return std::nullopt;
@@ -86,7 +86,7 @@ std::optional<Eigen::Isometry3d> Trajectory::stage_from_camera(const Frame& fram
     if (std::abs(before->stamp - wanted) < std::abs(nearest->stamp - wanted)) nearest = before;
   }
   if (!(std::abs(nearest->stamp - wanted) <= tolerance)) return std::nullopt;
-  return nearest->stage_from_camera;
+  return nearest->board_from_camera;
 }
 
 Trajectory read_trajectory(const std::filesystem::path& path) {
@@ -118,10 +118,10 @@ void write_trajectory(const std::filesystem::path& path,
   core::StagedOutput output(path);
   std::ofstream out(output.path());
   out.imbue(std::locale::classic());
-  out << "# stamp tx ty tz qx qy qz qw (stage_from_camera, metres)\n" << std::setprecision(12);
+  out << "# stamp tx ty tz qx qy qz qw (board_from_camera, metres)\n" << std::setprecision(12);
   for (const Trajectory::Entry& entry : entries) {
-    const Eigen::Vector3d t = entry.stage_from_camera.translation();
-    const Eigen::Quaterniond q(entry.stage_from_camera.linear());
+    const Eigen::Vector3d t = entry.board_from_camera.translation();
+    const Eigen::Quaterniond q(entry.board_from_camera.linear());
     out << entry.stamp << ' ' << t.x() << ' ' << t.y() << ' ' << t.z() << ' ' << q.x() << ' '
         << q.y() << ' ' << q.z() << ' ' << q.w() << '\n';
   }

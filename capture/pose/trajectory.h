@@ -12,13 +12,13 @@
 namespace sheen::capture {
 
 /// Poses of a recording in TUM form: one line per frame, `stamp tx ty tz qx qy qz qw`, the
-/// transform stage_from_camera in metres. Stamps are frame indices, or seconds when any has a
+/// transform board_from_camera in metres. Stamps are frame indices, or seconds when any has a
 /// fraction.
 class Trajectory {
  public:
   struct Entry {
     double stamp = 0;
-    Eigen::Isometry3d stage_from_camera = Eigen::Isometry3d::Identity();
+    Eigen::Isometry3d board_from_camera = Eigen::Isometry3d::Identity();
   };
 
   Trajectory() = default;
@@ -27,7 +27,7 @@ class Trajectory {
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
 
   /// Pose of a frame: by index, or for stamps in seconds the entry within half a frame (`1 / fps`).
-  [[nodiscard]] std::optional<Eigen::Isometry3d> stage_from_camera(const Frame& frame,
+  [[nodiscard]] std::optional<Eigen::Isometry3d> board_from_camera(const Frame& frame,
                                                                    double fps) const;
 
  private:

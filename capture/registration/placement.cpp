@@ -21,7 +21,7 @@ constexpr std::size_t kMinPairs = 3;
 constexpr double kFarthestM = 1e3;
 constexpr double kNarrowest = 1e-3;  // width over length of points that lie on one line
 constexpr const char* kRemedy =
-    "write one pair a line: x y z in the mesh, x y z on the stage, metres";
+    "write one pair a line: x y z in the mesh, x y z on the board, metres";
 
 /// One line without its comment; no value for an empty one.
 std::optional<PointPair> parse_line(std::string line, const std::filesystem::path& path,
@@ -31,7 +31,7 @@ std::optional<PointPair> parse_line(std::string line, const std::filesystem::pat
   in.imbue(std::locale::classic());
   if ((in >> std::ws).eof()) return std::nullopt;
   PointPair pair;
-  for (Eigen::Vector3d* point : {&pair.in_object, &pair.in_stage}) {
+  for (Eigen::Vector3d* point : {&pair.in_object, &pair.in_board}) {
     for (int i = 0; i < 3; ++i) {
       if (!(in >> (*point)[i]) || !(std::abs((*point)[i]) <= kFarthestM)) {
         throw core::bad_input(path, "line " + std::to_string(number) + " holds no six numbers",
@@ -65,17 +65,17 @@ PairPlacement place_by_pairs(const std::vector<PointPair>& pairs,
   Eigen::Matrix3Xd stage(3, object.cols());
   for (Eigen::Index i = 0; i < object.cols(); ++i) {
     object.col(i) = pairs[static_cast<std::size_t>(i)].in_object;
-    stage.col(i) = pairs[static_cast<std::size_t>(i)].in_stage;
+    stage.col(i) = pairs[static_cast<std::size_t>(i)].in_board;
   }
-  for (const Eigen::Matrix3Xd& points : {object, stage}) {
+  for (const Eigen::Matrix3Xd& points : {object, board}) {
     const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(points.colwise() - points.rowwise().mean());
     if (!(svd.singularValues()[1] > kNarrowest * svd.singularValues()[0])) {
       throw core::bad_input(path, "holds points on one line", "pick three that span a triangle");
     }
   }
   PairPlacement placement;
-  placement.stage_from_object = Eigen::Isometry3d(Eigen::umeyama(object, stage, false));
-  placement.rms_m = std::sqrt((placement.stage_from_object * object - stage).squaredNorm() /
+  placement.board_from_object = Eigen::Isometry3d(Eigen::umeyama(object, board, false));
+  placement.rms_m = std::sqrt((placement.board_from_object * object - board).squaredNorm() /
                               static_cast<double>(pairs.size()));
   return placement;
 }

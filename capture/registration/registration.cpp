@@ -63,29 +63,29 @@ class Aligner {
     trust_.assign(views.size(), 1);
   }
 
-  void run(const Stage& stage, Eigen::Isometry3d& stage_from_object) {
-    learn_colours(stage, stage_from_object);
+  void run(const Stage& stage, Eigen::Isometry3d& board_from_object) {
+    learn_colours(stage, board_from_object);
     trust_.assign(views_.size(), 1);
     if (stage.cue == Cue::edge) {
       // Seen from afar first: close by, a wrong view finds some edge everywhere.
-      measure({Cue::colour, kFarReach}, stage_from_object);
+      measure({Cue::colour, kFarReach}, board_from_object);
       distrust_odd_views(kColourSlackPx);
     }
     for (int step = 0; step < kStepsPerReach; ++step) {
-      measure(stage, stage_from_object);
+      measure(stage, board_from_object);
       if (stage.cue == Cue::edge) distrust_odd_views(kEdgeSlackPx);
-      const Vector6d twist = solve(stage, stage_from_object);
-      move(twist, stage_from_object);
-      if (twist.norm() * focal_per_metre(stage_from_object) < kShortestStepPx) break;
+      const Vector6d twist = solve(stage, board_from_object);
+      move(twist, board_from_object);
+      if (twist.norm() * focal_per_metre(board_from_object) < kShortestStepPx) break;
     }
   }
 
   /// Residuals, uncertainty and counts at the end.
-  [[nodiscard]] Registration summarise(const Eigen::Isometry3d& stage_from_object) {
-    measure({Cue::edge, kEdgeReachesPx.back()}, stage_from_object);
+  [[nodiscard]] Registration summarise(const Eigen::Isometry3d& board_from_object) {
+    measure({Cue::edge, kEdgeReachesPx.back()}, board_from_object);
     distrust_odd_views(kEdgeSlackPx);
     Registration result;
-    result.stage_from_object = stage_from_object;
+    result.board_from_object = board_from_object;
     std::vector<double> distances_px;
     std::size_t points = 0;
     std::size_t near = 0;
@@ -108,53 +108,53 @@ class Aligner {
   }
 
  private:
-  [[nodiscard]] Eigen::Vector3d centre(const Eigen::Isometry3d& stage_from_object) const {
-    return stage_from_object * contours_.bounds().center();
+  [[nodiscard]] Eigen::Vector3d centre(const Eigen::Isometry3d& board_from_object) const {
+    return board_from_object * contours_.bounds().center();
   }
 
   /// Pixels per metre at the object's centre.
   [[nodiscard]] double scale_px(const RegistrationView& view,
-                                const Eigen::Isometry3d& stage_from_object) const {
-    const double depth_m = (view.camera_from_stage * centre(stage_from_object)).z();
+                                const Eigen::Isometry3d& board_from_object) const {
+    const double depth_m = (view.camera_from_board * centre(board_from_object)).z();
     return camera_.intrinsics().focal_px.mean() / std::max(depth_m, 1e-3);
   }
 
-  [[nodiscard]] double focal_per_metre(const Eigen::Isometry3d& stage_from_object) const {
+  [[nodiscard]] double focal_per_metre(const Eigen::Isometry3d& board_from_object) const {
     double sum = 0;
-    for (const auto& view : views_) sum += scale_px(view, stage_from_object);
+    for (const auto& view : views_) sum += scale_px(view, board_from_object);
     return sum / static_cast<double>(views_.size());
   }
 
   [[nodiscard]] double reach_px(const Stage& stage, const RegistrationView& view,
-                                const Eigen::Isometry3d& stage_from_object) const {
+                                const Eigen::Isometry3d& board_from_object) const {
     if (stage.cue == Cue::edge) return stage.reach;
-    return std::clamp(stage.reach * limits_.search_m * scale_px(view, stage_from_object),
+    return std::clamp(stage.reach * limits_.search_m * scale_px(view, board_from_object),
                       kSmallestReachPx, kLargestReachPx);
   }
 
   /// Counts colours within the object and round it, a distance away from its supposed outline.
-  void learn_colours(const Stage& stage, const Eigen::Isometry3d& stage_from_object) {
+  void learn_colours(const Stage& stage, const Eigen::Isometry3d& board_from_object) {
     colours_ = ColourStatistics();
     for (const RegistrationView& view : views_) {
-      learn_colours_of(view.image, contours_, camera_, view.camera_from_stage * stage_from_object,
-                       reach_px(stage, view, stage_from_object), colours_);
+      learn_colours_of(view.image, contours_, camera_, view.camera_from_board * board_from_object,
+                       reach_px(stage, view, board_from_object), colours_);
     }
     colours_.finish();
   }
 
   /// Matches the outline in every view and sets up its normal equations.
-  void measure(const Stage& stage, const Eigen::Isometry3d& stage_from_object) {
+  void measure(const Stage& stage, const Eigen::Isometry3d& board_from_object) {
     systems_.assign(views_.size(), {});
     for (std::size_t v = 0; v < views_.size(); ++v) {
-      measure_view(stage, views_[v], stage_from_object, systems_[v]);
+      measure_view(stage, views_[v], board_from_object, systems_[v]);
     }
     if (stage.cue == Cue::edge) spread_px_ = edge_spread_px();
   }
 
   void measure_view(const Stage& stage, const RegistrationView& view,
-                    const Eigen::Isometry3d& stage_from_object, ViewSystem& system) const {
-    const Eigen::Isometry3d camera_from_object = view.camera_from_stage * stage_from_object;
-    const double reach = reach_px(stage, view, stage_from_object);
+                    const Eigen::Isometry3d& board_from_object, ViewSystem& system) const {
+    const Eigen::Isometry3d camera_from_object = view.camera_from_board * board_from_object;
+    const double reach = reach_px(stage, view, board_from_object);
     for (const ContourPoint& point : contours_.find(camera_, camera_from_object, kSpacingPx)) {
       ++system.points;
       const auto match =
@@ -167,7 +167,7 @@ class Aligner {
       const double ratio = match->offset_px / spread;
       const double weight =
           view.weight * match->weight / ((1 + ratio * ratio) * (1 + ratio * ratio));
-      const Vector6d a = derivative(view, stage_from_object, point);
+      const Vector6d a = derivative(view, board_from_object, point);
       system.H += weight * a * a.transpose();
       system.g += weight * match->offset_px * a;
     }
@@ -175,17 +175,17 @@ class Aligner {
 
   /// How the outline moves outwards with the object.
   [[nodiscard]] Vector6d derivative(const RegistrationView& view,
-                                    const Eigen::Isometry3d& stage_from_object,
+                                    const Eigen::Isometry3d& board_from_object,
                                     const ContourPoint& point) const {
-    const Eigen::Vector3d in_stage = stage_from_object * point.in_object;
+    const Eigen::Vector3d in_board = board_from_object * point.in_object;
     const auto projected =
-        core::project_with_derivative(camera_, view.camera_from_stage * in_stage);
+        core::project_with_derivative(camera_, view.camera_from_board * in_board);
     if (!projected) return Vector6d::Zero();
     const Eigen::Vector3d by_shift =
-        (point.outward.transpose() * projected->pixel_by_point * view.camera_from_stage.linear())
+        (point.outward.transpose() * projected->pixel_by_point * view.camera_from_board.linear())
             .transpose();
     Vector6d a;
-    a << (in_stage - centre(stage_from_object)).cross(by_shift) / radius_m_, by_shift;
+    a << (in_board - centre(board_from_object)).cross(by_shift) / radius_m_, by_shift;
     return a;
   }
 
@@ -236,29 +236,29 @@ class Aligner {
   /// Gauss-Newton step. A weak prior keeps what the outline does not tell near the guess: one
   /// standard deviation of the search distance in every direction.
   [[nodiscard]] Vector6d solve(const Stage& stage,
-                               const Eigen::Isometry3d& stage_from_object) const {
+                               const Eigen::Isometry3d& board_from_object) const {
     Vector6d g = Vector6d::Zero();
     for (std::size_t v = 0; v < views_.size(); ++v) g += trust_[v] * systems_[v].g;
     const double prior = prior_information(
-        stage.cue == Cue::edge ? spread_px_ : 0.3 * reach_px(stage, views_[0], stage_from_object));
-    const Eigen::AngleAxisd turned(stage_from_object.linear() * guess_.linear().transpose());
+        stage.cue == Cue::edge ? spread_px_ : 0.3 * reach_px(stage, views_[0], board_from_object));
+    const Eigen::AngleAxisd turned(board_from_object.linear() * guess_.linear().transpose());
     Vector6d moved;
-    moved << radius_m_ * turned.angle() * turned.axis(), centre(stage_from_object) - centre(guess_);
+    moved << radius_m_ * turned.angle() * turned.axis(), centre(board_from_object) - centre(guess_);
     Matrix6d H = sum_of_H();
     H.diagonal().array() += prior;
     return H.ldlt().solve(g - prior * moved);
   }
 
-  void move(const Vector6d& twist, Eigen::Isometry3d& stage_from_object) const {
+  void move(const Vector6d& twist, Eigen::Isometry3d& board_from_object) const {
     const Eigen::Vector3d turn = twist.head<3>() / radius_m_;
-    const Eigen::Vector3d about = centre(stage_from_object);
+    const Eigen::Vector3d about = centre(board_from_object);
     Eigen::Isometry3d motion = Eigen::Isometry3d::Identity();
     motion.translate(about + twist.tail<3>());
     if (turn.norm() > 0) motion.rotate(Eigen::AngleAxisd(turn.norm(), turn.normalized()));
     motion.translate(-about);
-    stage_from_object = motion * stage_from_object;
-    stage_from_object.linear() =
-        Eigen::Quaterniond(stage_from_object.linear()).normalized().toRotationMatrix();
+    board_from_object = motion * board_from_object;
+    board_from_object.linear() =
+        Eigen::Quaterniond(board_from_object.linear()).normalized().toRotationMatrix();
   }
 
   /// Spread of the solution if the views were drawn anew: H^-1 (sum of g g^T over views) H^-1,
@@ -283,15 +283,15 @@ class Aligner {
   }
 
   void describe_motion(Registration& result) const {
-    const Eigen::Isometry3d& after = result.stage_from_object;
+    const Eigen::Isometry3d& after = result.board_from_object;
     result.translation_m = (centre(after) - centre(guess_)).norm();
     result.rotation_rad = Eigen::AngleAxisd(after.linear() * guess_.linear().transpose()).angle();
     double sum = 0;
     std::size_t count = 0;
     for (const RegistrationView& view : views_) {
       for (const ContourPoint& point :
-           contours_.find(camera_, view.camera_from_stage * after, kSpacingPx)) {
-        const auto before = camera_.project(view.camera_from_stage * guess_ * point.in_object);
+           contours_.find(camera_, view.camera_from_board * after, kSpacingPx)) {
+        const auto before = camera_.project(view.camera_from_board * guess_ * point.in_object);
         if (!before) continue;
         sum += (point.pixel - *before).norm();
         ++count;
@@ -320,11 +320,11 @@ std::optional<Registration> register_object(const core::Mesh& mesh, const core::
                                             const RegistrationLimits& limits) {
   if (views.size() < kSmallestViews) return std::nullopt;
   Aligner aligner(mesh, camera, views, guess, limits);
-  Eigen::Isometry3d stage_from_object = guess;
-  for (const double reach : kColourReaches) aligner.run({Cue::colour, reach}, stage_from_object);
-  for (const double reach : kEdgeReachesPx) aligner.run({Cue::edge, reach}, stage_from_object);
-  const Registration result = aligner.summarise(stage_from_object);
-  if (!stage_from_object.matrix().allFinite() || result.matched_share < limits.min_matched_share ||
+  Eigen::Isometry3d board_from_object = guess;
+  for (const double reach : kColourReaches) aligner.run({Cue::colour, reach}, board_from_object);
+  for (const double reach : kEdgeReachesPx) aligner.run({Cue::edge, reach}, board_from_object);
+  const Registration result = aligner.summarise(board_from_object);
+  if (!board_from_object.matrix().allFinite() || result.matched_share < limits.min_matched_share ||
       result.views < kSmallestViews) {
     return std::nullopt;
   }

@@ -15,13 +15,13 @@ namespace sheen::capture {
 /// A picture whose camera is known.
 struct RegistrationView {
   cv::Mat image;  ///< CV_8UC3, BGR
-  Eigen::Isometry3d camera_from_stage = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
   double weight = 1;  ///< trust in picture and pose, > 0
 };
 
-/// Where an object stands on the stage, as its outline in many pictures says.
+/// Where an object stands on the board, as its outline in many pictures says.
 struct Registration {
-  Eigen::Isometry3d stage_from_object = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();
   double residual_px = 0;    ///< median distance of the outline from the pictures' edges
   double matched_share = 0;  ///< of the outline that has an edge within 2 px, [0, 1]
   double motion_px = 0;      ///< mean distance by which the outline moved from the guess

@@ -63,8 +63,8 @@ void draw_outline(cv::Mat& cell, const Crop& crop, const std::vector<ContourPoin
 cv::Mat draw_cell(const ContourFinder& contours, const core::CameraModel& camera,
                   const RegistrationView& view, const std::string& label,
                   const Eigen::Isometry3d& before, const Eigen::Isometry3d& after) {
-  const auto old_outline = contours.find(camera, view.camera_from_stage * before, kOutlineStep);
-  const auto new_outline = contours.find(camera, view.camera_from_stage * after, kOutlineStep);
+  const auto old_outline = contours.find(camera, view.camera_from_board * before, kOutlineStep);
+  const auto new_outline = contours.find(camera, view.camera_from_board * after, kOutlineStep);
   const Crop crop = crop_around(old_outline, new_outline, camera);
   const cv::Matx23d cell_from_photograph(crop.scale, 0, -crop.scale * crop.corner.x(), 0,
                                          crop.scale, -crop.scale * crop.corner.y());

@@ -12,9 +12,9 @@ constexpr double kSlowPx = 1.5;        // slower than this is nearly as good as 
 
 /// Pixels per frame by which the point moves from one frame to another.
 double speed_px(const PosedFrameIndex& a, const PosedFrameIndex& b, const core::CameraModel& camera,
-                const Eigen::Vector3d& point_in_stage) {
-  const auto before = camera.project(a.camera_from_stage * point_in_stage);
-  const auto after = camera.project(b.camera_from_stage * point_in_stage);
+                const Eigen::Vector3d& point_in_board) {
+  const auto before = camera.project(a.camera_from_board * point_in_board);
+  const auto after = camera.project(b.camera_from_board * point_in_board);
   const int frames = b.index - a.index;
   if (!before || !after || frames <= 0) return kUnknownSpeed;
   return (*after - *before).norm() / frames;
@@ -23,10 +23,10 @@ double speed_px(const PosedFrameIndex& a, const PosedFrameIndex& b, const core::
 /// The faster of the motions before and after each frame.
 std::vector<double> speeds_px(const std::vector<PosedFrameIndex>& frames,
                               const core::CameraModel& camera,
-                              const Eigen::Vector3d& point_in_stage) {
+                              const Eigen::Vector3d& point_in_board) {
   std::vector<double> speeds(frames.size(), frames.size() > 1 ? 0 : kUnknownSpeed);
   for (std::size_t i = 0; i + 1 < frames.size(); ++i) {
-    const double speed = speed_px(frames[i], frames[i + 1], camera, point_in_stage);
+    const double speed = speed_px(frames[i], frames[i + 1], camera, point_in_board);
     speeds[i] = std::max(speeds[i], speed);
     speeds[i + 1] = std::max(speeds[i + 1], speed);
   }
@@ -37,9 +37,9 @@ std::vector<double> speeds_px(const std::vector<PosedFrameIndex>& frames,
 
 std::vector<ChosenView> choose_views(const std::vector<PosedFrameIndex>& frames,
                                      const core::CameraModel& camera,
-                                     const Eigen::Vector3d& centre_in_stage, int count) {
+                                     const Eigen::Vector3d& centre_in_board, int count) {
   if (frames.empty() || count < 1) return {};
-  const std::vector<double> speeds = speeds_px(frames, camera, centre_in_stage);
+  const std::vector<double> speeds = speeds_px(frames, camera, centre_in_board);
 
   // The slowest of each stretch.
   const std::size_t parts = std::min(frames.size(), static_cast<std::size_t>(count));

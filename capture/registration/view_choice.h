@@ -12,7 +12,7 @@ namespace sheen::capture {
 /// A frame whose camera is known.
 struct PosedFrameIndex {
   int index = 0;  ///< of the frame in its recording
-  Eigen::Isometry3d camera_from_stage = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
 };
 
 /// A frame worth looking at.
@@ -22,10 +22,10 @@ struct ChosenView {
 };
 
 /// At most `count` frames spread over the recording: the slowest of each stretch, since a moving
-/// camera smears and a rolling shutter bends. Speed is that of `centre_in_stage` in the picture
+/// camera smears and a rolling shutter bends. Speed is that of `centre_in_board` in the picture
 /// between neighbouring frames of `frames`, which ascend by index.
 std::vector<ChosenView> choose_views(const std::vector<PosedFrameIndex>& frames,
                                      const core::CameraModel& camera,
-                                     const Eigen::Vector3d& centre_in_stage, int count);
+                                     const Eigen::Vector3d& centre_in_board, int count);
 
 }  // namespace sheen::capture

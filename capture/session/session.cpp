@@ -187,7 +187,7 @@ void read_object(SessionReader& reader, Session& session) {
   const auto mesh = reader.inner_file(object, "mesh");
   if (!mesh) reader.fail("\"object\" names no \"mesh\"");
   session.mesh = *mesh;
-  session.stage_from_object = read_transform(reader, object);
+  session.board_from_object = read_transform(reader, object);
 }
 
 std::unique_ptr<FrameSource> open_pictures(const Session& session, const FrameRange& range) {

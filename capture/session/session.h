@@ -27,7 +27,7 @@ struct Session {
   std::optional<std::filesystem::path> board;  ///< board.yaml
   std::optional<std::filesystem::path> poses;  ///< poses.txt; wins over the board
   std::filesystem::path mesh;
-  Eigen::Isometry3d stage_from_object = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();
   std::vector<std::string> warnings;  ///< unknown keys, one line each
 };
 

@@ -17,9 +17,9 @@ constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
 
 }  // namespace
 
-void write_stage_from_object(const std::filesystem::path& session_file,
+void write_board_from_object(const std::filesystem::path& session_file,
                              const std::filesystem::path& output,
-                             const Eigen::Isometry3d& stage_from_object) {
+                             const Eigen::Isometry3d& board_from_object) {
   auto session =
       nlohmann::ordered_json::parse(read_text_file(session_file, kMaxBytes), nullptr, false);
   if (!session.is_object() || !session.contains("object") || !session["object"].is_object()) {
@@ -28,7 +28,7 @@ void write_stage_from_object(const std::filesystem::path& session_file,
   auto numbers = nlohmann::ordered_json::array();
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 4; ++column) {
-      numbers.push_back(stage_from_object.matrix()(row, column));
+      numbers.push_back(board_from_object.matrix()(row, column));
     }
   }
   session["object"]["T_stage_object"] = numbers;

@@ -10,9 +10,9 @@ namespace sheen::capture {
 
 /// Writes a copy of `session_file` (session.json) with another T_stage_object to `output`, which
 /// may be the same file; everything else in it stays. Throws core::Error.
-void write_stage_from_object(const std::filesystem::path& session_file,
+void write_board_from_object(const std::filesystem::path& session_file,
                              const std::filesystem::path& output,
-                             const Eigen::Isometry3d& stage_from_object);
+                             const Eigen::Isometry3d& board_from_object);
 
 /// Copies a file beside itself as NAME.before-STEP.EXT, so that a step that replaces it can be
 /// taken back; where that exists, as NAME.before-STEP-2.EXT and so on: the first one stays. Returns

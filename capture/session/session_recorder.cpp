@@ -43,14 +43,14 @@ nlohmann::ordered_json transform_json(const Eigen::Isometry3d& transform) {
 }
 
 void write_description(const fs::path& folder, const std::string& mesh,
-                       const Eigen::Isometry3d& stage_from_object) {
+                       const Eigen::Isometry3d& board_from_object) {
   const nlohmann::ordered_json description{
       {"format", "sheen-session"},
       {"version", 1},
       {"frames", {{"video", "frames.avi"}, {"stamps", "frames.csv"}}},
       {"camera", "camera.yaml"},
       {"board", "board.yaml"},
-      {"object", {{"mesh", mesh}, {"T_stage_object", transform_json(stage_from_object)}}}};
+      {"object", {{"mesh", mesh}, {"T_stage_object", transform_json(board_from_object)}}}};
   std::ofstream file(folder / "session.json", std::ios::binary);
   file << description.dump(2) << '\n';
   file.close();
@@ -85,7 +85,7 @@ SessionRecorder::SessionRecorder(const fs::path& folder, const SessionSetup& set
   copy_part(setup.board, staged.path() / "board.yaml");
   const std::string mesh = "object" + setup.mesh.extension().string();
   copy_part(setup.mesh, staged.path() / mesh);
-  write_description(staged.path(), mesh, setup.stage_from_object);
+  write_description(staged.path(), mesh, setup.board_from_object);
   video_.emplace(staged.path() / "frames.avi",
                  PictureSize{setup.camera.width_px(), setup.camera.height_px()}, fps);
   stamps_ = FileHandle::create(staged.path() / "frames.csv");

@@ -24,7 +24,7 @@ struct SessionSetup {
   core::CameraModel camera;
   std::filesystem::path board;
   std::filesystem::path mesh;
-  Eigen::Isometry3d stage_from_object = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();
 };
 
 /// A picture on its way from the camera: shared, since disk, fit and screen take it at their pace.

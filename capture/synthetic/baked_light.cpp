@@ -61,10 +61,10 @@ class Probe {
     for (std::size_t i = 0; i < kSoftBoxes; ++i) cones_[i] = cone_directions(studio.boxes[i]);
   }
 
-  /// `stage_radiance(point, direction)` is what a ray that goes down and misses the object sees.
-  template <typename StageRadiance>
+  /// `board_radiance(point, direction)` is what a ray that goes down and misses the object sees.
+  template <typename BoardRadiance>
   Incident look(const Eigen::Vector3f& point, const Eigen::Vector3f& normal,
-                const StageRadiance& stage_radiance) const {
+                const BoardRadiance& board_radiance) const {
     const Eigen::Vector3f origin = point + kSurfaceOffset * normal;
     Incident incident;
     for (std::size_t i = 0; i < kSoftBoxes; ++i)
@@ -85,7 +85,7 @@ class Probe {
       }
       open += cosine;
       incident.ambient_irradiance +=
-          cosine * (direction.z() < 0 ? stage_radiance(origin, direction)
+          cosine * (direction.z() < 0 ? board_radiance(origin, direction)
                                       : room_radiance(studio_, direction));
     }
     incident.ambient_irradiance *= kPi / cosines;
@@ -160,16 +160,16 @@ Eigen::Vector3f GroundLight::irradiance(float x, float y) const {
 
 std::vector<Incident> bake_incident(const Studio& studio, const core::Mesh& object,
                                     const core::RayCaster& caster, const GroundLight& ground,
-                                    float stage_reflectance, int threads) {
+                                    float board_reflectance, int threads) {
   const Probe probe(studio, caster);
-  const auto stage_radiance = [&](const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) {
+  const auto board_radiance = [&](const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) {
     const Eigen::Vector3f foot = origin - origin.z() / direction.z() * direction;
-    return Eigen::Vector3f(stage_reflectance / kPi * ground.irradiance(foot.x(), foot.y()));
+    return Eigen::Vector3f(board_reflectance / kPi * ground.irradiance(foot.x(), foot.y()));
   };
   std::vector<Incident> incident(object.positions.size());
   core::parallel_for(incident.size(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      incident[i] = probe.look(object.positions[i], object.normals[i], stage_radiance);
+      incident[i] = probe.look(object.positions[i], object.normals[i], board_radiance);
     }
   });
   return incident;

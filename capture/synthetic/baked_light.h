@@ -12,7 +12,7 @@
 namespace sheen::capture::synthetic {
 
 /// Light that reaches a plane z = 0 under the object: a grid of irradiances around the origin,
-/// unshadowed beyond it. Stage frame.
+/// unshadowed beyond it. Board frame.
 class GroundLight {
  public:
   GroundLight(const Studio& studio, const core::RayCaster& object, float half_width_m, int threads);
@@ -27,11 +27,11 @@ class GroundLight {
   std::vector<Eigen::Vector3f> grid_;
 };
 
-/// Light at every vertex of `object` (stage frame), shadowed by the object itself and brightened by
-/// the stage below, whose mean reflectance is `stage_reflectance`. Baked, because the shadows do
+/// Light at every vertex of `object` (board frame), shadowed by the object itself and brightened by
+/// the board below, whose mean reflectance is `board_reflectance`. Baked, because the shadows do
 /// not move with the eye, and smooth, because every vertex looks along the same directions.
 std::vector<Incident> bake_incident(const Studio& studio, const core::Mesh& object,
                                     const core::RayCaster& caster, const GroundLight& ground,
-                                    float stage_reflectance, int threads);
+                                    float board_reflectance, int threads);
 
 }  // namespace sheen::capture::synthetic

@@ -23,17 +23,17 @@ Eigen::Isometry3d looking_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& 
                              double roll_rad) {
   const Eigen::Vector3d forward = (target - eye).normalized();
   const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
-  Eigen::Isometry3d stage_from_camera = Eigen::Isometry3d::Identity();
-  stage_from_camera.linear() << right, forward.cross(right), forward;
-  stage_from_camera.translation() = eye;
-  return stage_from_camera * Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitZ());
+  Eigen::Isometry3d board_from_camera = Eigen::Isometry3d::Identity();
+  board_from_camera.linear() << right, forward.cross(right), forward;
+  board_from_camera.translation() = eye;
+  return board_from_camera * Eigen::AngleAxisd(roll_rad, Eigen::Vector3d::UnitZ());
 }
 
 }  // namespace
 
-CameraPath::CameraPath(const Options& options, const Eigen::Vector3d& centre_in_stage,
+CameraPath::CameraPath(const Options& options, const Eigen::Vector3d& centre_in_board,
                        double radius_m)
-    : options_(options), centre_in_stage_(centre_in_stage), radius_m_(radius_m) {
+    : options_(options), centre_in_board_(centre_in_board), radius_m_(radius_m) {
   for (std::uint32_t channel = 0; channel < kChannels; ++channel) {
     for (std::uint32_t i = 0; i < 3; ++i) {
       const float turn = unit_float(hash(options.seed, channel, i));
@@ -54,7 +54,7 @@ double CameraPath::wave(int channel, double t) const {
   return sum;
 }
 
-Eigen::Isometry3d CameraPath::stage_from_camera(double t) const {
+Eigen::Isometry3d CameraPath::board_from_camera(double t) const {
   // Walk: azimuth, elevation and distance.
   const double shake = options_.shake;
   const double azimuth = kDegree * (options_.start_deg + 360 * options_.turns * t +
@@ -70,7 +70,7 @@ Eigen::Isometry3d CameraPath::stage_from_camera(double t) const {
   // Aim: near the centre, nearly upright.
   const Eigen::Vector3d miss =
       radius_m_ * kAimShake * shake * Eigen::Vector3d(wave(3, t), wave(4, t), wave(5, t));
-  return looking_at(centre_in_stage_ + distance * outward, centre_in_stage_ + miss,
+  return looking_at(centre_in_board_ + distance * outward, centre_in_board_ + miss,
                     kDegree * kRollShakeDeg * shake * wave(6, t));
 }
 

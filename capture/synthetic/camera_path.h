@@ -14,8 +14,8 @@ class CameraPath {
  public:
   /// What the walk keeps to; lengths in multiples of the object's radius.
   struct Options {
-    double turns = 3;             ///< rounds about the stage's z axis
-    double lowest_deg = 30;       ///< elevation above the stage at the start
+    double turns = 3;             ///< rounds about the board's z axis
+    double lowest_deg = 30;       ///< elevation above the board at the start
     double highest_deg = 60;      ///< and at the end
     double sway_deg = 0;          ///< amplitude of an extra wave of the elevation, twice per round
     double start_deg = 0;         ///< azimuth at the start
@@ -25,10 +25,10 @@ class CameraPath {
     std::uint32_t seed = 1;
   };
 
-  CameraPath(const Options& options, const Eigen::Vector3d& centre_in_stage, double radius_m);
+  CameraPath(const Options& options, const Eigen::Vector3d& centre_in_board, double radius_m);
 
   /// `t` in [0, 1]. Always looks near the object's centre.
-  [[nodiscard]] Eigen::Isometry3d stage_from_camera(double t) const;
+  [[nodiscard]] Eigen::Isometry3d board_from_camera(double t) const;
 
  private:
   /// Sum of three sines of slow, unrelated frequencies in [-1, 1].
@@ -36,7 +36,7 @@ class CameraPath {
 
   static constexpr int kChannels = 7;
   Options options_;
-  Eigen::Vector3d centre_in_stage_;
+  Eigen::Vector3d centre_in_board_;
   double radius_m_;
   std::array<std::array<double, 3>, kChannels> phases_{};
 };

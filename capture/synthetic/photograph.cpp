@@ -59,10 +59,10 @@ Eigen::Vector3f Photographer::ray(int x, int y, float fx, float fy) const {
   return {ideal.x(), ideal.y(), 1};
 }
 
-Exposure Photographer::expose(const Scene& scene, const Eigen::Isometry3d& stage_from_camera,
+Exposure Photographer::expose(const Scene& scene, const Eigen::Isometry3d& board_from_camera,
                               int samples, std::uint32_t seed, int threads) const {
-  const Eigen::Vector3f eye = stage_from_camera.translation().cast<float>();
-  const Eigen::Matrix3f stage_from_axes = stage_from_camera.linear().cast<float>();
+  const Eigen::Vector3f eye = board_from_camera.translation().cast<float>();
+  const Eigen::Matrix3f board_from_axes = board_from_camera.linear().cast<float>();
   Exposure exposure{cv::Mat(height_px_, width_px_, CV_32FC3),
                     cv::Mat(height_px_, width_px_, CV_32FC1)};
 
@@ -79,7 +79,7 @@ Exposure Photographer::expose(const Scene& scene, const Eigen::Isometry3d& stage
       const Eigen::Vector3f direction =
           ray(x, y, fraction(shift_x + 0.75487767f * step), fraction(shift_y + 0.56984029f * step));
       if (!direction.allFinite()) continue;  // beyond the lens: black
-      const Scene::Sight sight = scene.trace(eye, (stage_from_axes * direction).normalized());
+      const Scene::Sight sight = scene.trace(eye, (board_from_axes * direction).normalized());
       sum += sight.value;
       on_object += sight.on_object ? 1 : 0;
     }

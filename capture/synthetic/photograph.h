@@ -25,7 +25,7 @@ class Photographer {
 
   /// Averages `samples` rays over the square of every pixel (box filter, a shifted low-discrepancy
   /// set per pixel). The result does not depend on `threads`.
-  [[nodiscard]] Exposure expose(const Scene& scene, const Eigen::Isometry3d& stage_from_camera,
+  [[nodiscard]] Exposure expose(const Scene& scene, const Eigen::Isometry3d& board_from_camera,
                                 int samples, std::uint32_t seed, int threads) const;
 
  private:

@@ -3,7 +3,7 @@
 
 #include "capture/synthetic/baked_light.h"
 #include "capture/synthetic/lighting.h"
-#include "capture/synthetic/stage_print.h"
+#include "capture/synthetic/board_print.h"
 #include "core/visibility/ray_caster.h"
 
 #include <Eigen/Core>
@@ -20,9 +20,9 @@ namespace sheen::capture::synthetic {
 namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
-constexpr double kTurnRad = 0.35;          // of the object on the stage
+constexpr double kTurnRad = 0.35;          // of the object on the board
 constexpr float kPatternOfRadius = 0.18f;  // half a band over the radius of the object
-constexpr float kMeanStageReflectance = 0.5f;
+constexpr float kMeanBoardReflectance = 0.5f;
 
 Eigen::AlignedBox3f bounds_of(const core::Mesh& mesh) {
   Eigen::AlignedBox3f box;
@@ -30,7 +30,7 @@ Eigen::AlignedBox3f bounds_of(const core::Mesh& mesh) {
   return box;
 }
 
-Eigen::Isometry3d placed_on_stage(const core::Mesh& mesh, float lift_m) {
+Eigen::Isometry3d placed_on_board(const core::Mesh& mesh, float lift_m) {
   const Eigen::AlignedBox3f box = bounds_of(mesh);
   const Eigen::Vector3d foot(box.center().x(), box.center().y(), box.min().z());
   return Eigen::Translation3d(0, 0, lift_m) *
@@ -74,30 +74,30 @@ struct Scene::Impl {
   Impl(SceneKind kind_in, core::Mesh object_in, float lift_m, int threads)
       : kind(kind_in),
         object(std::move(object_in)),
-        stage_from_object(placed_on_stage(object, lift_m)),
-        object_from_stage(stage_from_object.inverse().cast<float>()),
-        in_stage(transformed(object, stage_from_object.cast<float>())),
-        bounds(bounds_of(in_stage)),
+        board_from_object(placed_on_board(object, lift_m)),
+        object_from_board(board_from_object.inverse().cast<float>()),
+        in_board(transformed(object, board_from_object.cast<float>())),
+        bounds(bounds_of(in_board)),
         radius_m(0.5f * bounds.sizes().maxCoeff()),
         print(radius_m),
-        caster(in_stage),
+        caster(in_board),
         ground(studio, caster, 1.4f * print.half_width_m(), threads),
-        baked(bake_incident(studio, in_stage, caster, ground, kMeanStageReflectance, threads)) {}
+        baked(bake_incident(studio, in_board, caster, ground, kMeanBoardReflectance, threads)) {}
 
   [[nodiscard]] Eigen::Vector3f object_value(const core::RayHit& hit, const Eigen::Vector3f& point,
                                              const Eigen::Vector3f& direction) const;
-  [[nodiscard]] Eigen::Vector3f stage_value(const Eigen::Vector3f& origin,
+  [[nodiscard]] Eigen::Vector3f board_value(const Eigen::Vector3f& origin,
                                             const Eigen::Vector3f& direction) const;
 
   SceneKind kind;
   Studio studio = product_studio();
   core::Mesh object;
-  Eigen::Isometry3d stage_from_object;
-  Eigen::Isometry3f object_from_stage;
-  core::Mesh in_stage;
+  Eigen::Isometry3d board_from_object;
+  Eigen::Isometry3f object_from_board;
+  core::Mesh in_board;
   Eigen::AlignedBox3f bounds;
   float radius_m;
-  StagePrint print;
+  BoardPrint print;
   core::RayCaster caster;
   GroundLight ground;
   std::vector<Incident> baked;
@@ -106,8 +106,8 @@ struct Scene::Impl {
 Eigen::Vector3f Scene::Impl::object_value(const core::RayHit& hit, const Eigen::Vector3f& point,
                                           const Eigen::Vector3f& direction) const {
   Eigen::Vector3f normal =
-      inside<Eigen::Vector3f>(in_stage, hit, [&](std::uint32_t vertex) -> const Eigen::Vector3f& {
-        return in_stage.normals[vertex];
+      inside<Eigen::Vector3f>(in_board, hit, [&](std::uint32_t vertex) -> const Eigen::Vector3f& {
+        return in_board.normals[vertex];
       }).normalized();
 
   // Keep the interpolated normal on the eye's side: at the silhouette it may tip over.
@@ -115,11 +115,11 @@ Eigen::Vector3f Scene::Impl::object_value(const core::RayHit& hit, const Eigen::
   constexpr float least = 0.02f;
   if (cosine < least) normal = (normal - (least - cosine) * direction).normalized();
 
-  const Finish finish = finish_at(kind, object_from_stage * point, kPatternOfRadius * radius_m);
-  return reflected_radiance(finish, normal, -direction, studio, incident_at(in_stage, hit, baked));
+  const Finish finish = finish_at(kind, object_from_board * point, kPatternOfRadius * radius_m);
+  return reflected_radiance(finish, normal, -direction, studio, incident_at(in_board, hit, baked));
 }
 
-Eigen::Vector3f Scene::Impl::stage_value(const Eigen::Vector3f& origin,
+Eigen::Vector3f Scene::Impl::board_value(const Eigen::Vector3f& origin,
                                          const Eigen::Vector3f& direction) const {
   if (direction.z() > -1e-3f) return 0.5f * room_radiance(studio, direction);
   const Eigen::Vector3f foot = origin - origin.z() / direction.z() * direction;
@@ -137,8 +137,8 @@ Scene& Scene::operator=(Scene&&) noexcept = default;
 const core::Mesh& Scene::object() const {
   return impl_->object;
 }
-const Eigen::Isometry3d& Scene::stage_from_object() const {
-  return impl_->stage_from_object;
+const Eigen::Isometry3d& Scene::board_from_object() const {
+  return impl_->board_from_object;
 }
 const Board& Scene::board() const {
   return impl_->print.board();
@@ -155,7 +155,7 @@ Scene::Sight Scene::trace(const Eigen::Vector3f& origin, const Eigen::Vector3f& 
   const auto hit = scene.caster.first_hit(origin, direction, 0, std::numeric_limits<float>::max());
   const Eigen::Vector3f radiance =
       hit ? scene.object_value(*hit, origin + hit->distance * direction, direction)
-          : scene.stage_value(origin, direction);
+          : scene.board_value(origin, direction);
   return {scene.studio.exposure * radiance, hit.has_value()};
 }
 

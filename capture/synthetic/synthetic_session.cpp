@@ -65,7 +65,7 @@ std::vector<Trajectory::Entry> walk(const CameraPath& path, int views, bool clos
   std::vector<Trajectory::Entry> entries;
   for (int i = 0; i < views; ++i) {
     const double last = closed ? views : std::max(views - 1, 1);
-    entries.push_back({static_cast<double>(i), path.stage_from_camera(i / last)});
+    entries.push_back({static_cast<double>(i), path.board_from_camera(i / last)});
   }
   return entries;
 }
@@ -96,7 +96,7 @@ void write_common(const fs::path& folder, const Scene& scene, const SyntheticOpt
   session["camera"] = "camera.yaml";
   session[pose_key] = pose_file;
   session["object"] = {{"mesh", "object.ply"},
-                       {"T_stage_object", transform_json(scene.stage_from_object())}};
+                       {"T_stage_object", transform_json(scene.board_from_object())}};
   write_text(folder / "session.json", session.dump(2) + "\n");
   write_camera(folder / "camera.yaml", camera);
   const bool coarser = !options.mesh && options.mesh_vertices > 0;
@@ -119,7 +119,7 @@ void write_recording(const fs::path& folder, const Scene& scene, const core::Cam
   const Photographer photographer(camera);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const std::uint32_t seed = hash(options.seed, static_cast<std::uint32_t>(i));
-    const Exposure exposure = photographer.expose(scene, poses[i].stage_from_camera,
+    const Exposure exposure = photographer.expose(scene, poses[i].board_from_camera,
                                                   options.samples, seed, options.threads);
     video.append(develop(exposure.light, SensorNoise{}, hash(seed, 1U)));
     counter.advance();
@@ -140,7 +140,7 @@ void write_held_out(const fs::path& folder, const Scene& scene, const core::Came
   const Photographer photographer(camera);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Exposure exposure = photographer.expose(
-        scene, poses[i].stage_from_camera, kHeldOutSamplesFactor * options.samples,
+        scene, poses[i].board_from_camera, kHeldOutSamplesFactor * options.samples,
         hash(options.seed, static_cast<std::uint32_t>(i), 2U), options.threads);
     std::array<char, 32> name{};
     std::snprintf(name.data(), name.size(), "%04zu.png", i);

@@ -35,7 +35,7 @@ struct SyntheticOptions {
 /// Lens and sensor of the recording: focal length 0.9 times the longer side, a visible barrel.
 core::CameraModel synthetic_camera(int width_px, int height_px);
 
-/// The object on its stage. Throws core::Error (bad_input) for a mesh that cannot be read, or that
+/// The object on its board. Throws core::Error (bad_input) for a mesh that cannot be read, or that
 /// is not between 1 cm and 2 m in radius.
 Scene make_scene(const SyntheticOptions& options);
 

@@ -14,7 +14,7 @@
 namespace sheen::fitting::guidance {
 namespace {
 
-constexpr float kLowestSine = 0.1f;  // of the elevation above the stage: 6 degrees
+constexpr float kLowestSine = 0.1f;  // of the elevation above the board: 6 degrees
 constexpr float kHighestSine = 0.99f;
 constexpr float kShortestWay_rad = 0.2f;
 

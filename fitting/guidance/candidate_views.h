@@ -16,7 +16,7 @@
 namespace sheen::fitting::guidance {
 
 /// Where a camera could stand: places spread evenly over the part of a sphere round the object
-/// that lies above the stage. Object frame, metres.
+/// that lies above the board. Object frame, metres.
 std::vector<Eigen::Vector3f> candidate_places(const Eigen::Vector3f& centre, float distance_m,
                                               const Eigen::Vector3f& up, int count);
 

@@ -174,9 +174,9 @@ TEST_F(LiveCapture, RefusesWhatDoesNotFitTogether) {
       EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
     }
   };
-  options_.stage_from_object = std::vector<double>(16, 0.5);
+  options_.board_from_object = std::vector<double>(16, 0.5);
   expect_refused("--T-stage-object");
-  options_.stage_from_object.clear();
+  options_.board_from_object.clear();
   options_.mesh = sample_session() / "camera.yaml";
   expect_refused("camera.yaml");
   options_.mesh.clear();

@@ -197,7 +197,7 @@ class LivePipeline {
                                  .baseline = nullptr,
                                  .mesh = mesh_,
                                  .camera = session_.camera,
-                                 .stage_from_object = session_.stage_from_object,
+                                 .board_from_object = session_.board_from_object,
                                  .limits = {},
                                  .save =
                                      [this](const fitting::LightField& light_field) {
@@ -215,7 +215,7 @@ class LivePipeline {
     ModelStage stage({.visibility = core::make_ray_visibility(mesh_, 1),
                       .mesh = mesh_,
                       .camera = session_.camera,
-                      .stage_from_object = session_.stage_from_object,
+                      .board_from_object = session_.board_from_object,
                       .limits = {},
                       .model = model_,
                       .baseline = nullptr,

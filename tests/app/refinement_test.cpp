@@ -24,14 +24,14 @@ std::filesystem::path session_with_displaced_tags(const std::filesystem::path& f
   std::mt19937 random(9);
   std::normal_distribution<double> shift_m(0, 0.0005);
   for (auto& [id, tag] : board.tags) {
-    tag.stage_from_tag.translation() += Eigen::Vector3d(shift_m(random), shift_m(random), 0);
+    tag.board_from_tag.translation() += Eigen::Vector3d(shift_m(random), shift_m(random), 0);
   }
   capture::write_board(session / "board.yaml", board);
   return session;
 }
 
 /// Root mean square over frames of how far the camera is from its true place, after the one rigid
-/// motion of the stage that fits all frames best: displaced tags leave the stage frame itself open.
+/// motion of the board that fits all frames best: displaced tags leave the board frame itself open.
 double relative_error_m(const std::filesystem::path& estimate) {
   const auto truth = capture::read_trajectory(sample_session() / "truth_poses.txt");
   const auto found = capture::read_trajectory(estimate);
@@ -41,8 +41,8 @@ double relative_error_m(const std::filesystem::path& estimate) {
   for (const auto& entry : found.entries()) {
     for (const auto& reference : truth.entries()) {
       if (reference.stamp != entry.stamp) continue;
-      from.col(column) = entry.stage_from_camera.translation();
-      to.col(column++) = reference.stage_from_camera.translation();
+      from.col(column) = entry.board_from_camera.translation();
+      to.col(column++) = reference.board_from_camera.translation();
     }
   }
   from.conservativeResize(3, column);

@@ -33,7 +33,7 @@ PoseErrors compare_poses(const std::filesystem::path& estimate,
     for (const auto& reference : true_poses.entries()) {
       if (reference.stamp != entry.stamp) continue;
       const Eigen::Isometry3d difference =
-          reference.stage_from_camera.inverse() * entry.stage_from_camera;
+          reference.board_from_camera.inverse() * entry.board_from_camera;
       errors.millimetres.push_back(1000 * difference.translation().norm());
       errors.degrees.push_back(Eigen::AngleAxisd(difference.linear()).angle() * 180 / M_PI);
     }

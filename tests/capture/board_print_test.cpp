@@ -44,14 +44,14 @@ core::CameraModel scanner(const cv::Mat& page) {
   return core::CameraModel(intrinsics);
 }
 
-/// A place of the stage (metres) on the drawn page of a sheet.
+/// A place of the board (metres) on the drawn page of a sheet.
 Eigen::Vector2d pixel_of(const BoardPlan& plan, const BoardSheet& sheet,
-                         const Eigen::Vector3d& in_stage) {
+                         const Eigen::Vector3d& in_board) {
   const auto [left, bottom] = block_corner_mm(plan, sheet);
   const double x_mm =
-      1000 * in_stage.x() + left + (plan.columns / 2.0 - sheet.first_column) * plan.pitch_mm;
+      1000 * in_board.x() + left + (plan.columns / 2.0 - sheet.first_column) * plan.pitch_mm;
   const double y_mm =
-      1000 * in_stage.y() + bottom + (plan.rows / 2.0 - sheet.first_row) * plan.pitch_mm;
+      1000 * in_board.y() + bottom + (plan.rows / 2.0 - sheet.first_row) * plan.pitch_mm;
   return {x_mm * kPixelsPerMm - 0.5, (plan.design.paper.height_mm - y_mm) * kPixelsPerMm - 0.5};
 }
 
@@ -79,7 +79,7 @@ TEST_P(PrintedBoard, ShowsEveryTagInItsPlace) {
       ASSERT_TRUE(board.tags.contains(tag.id)) << tag.id;
       EXPECT_TRUE(seen.insert(tag.id).second) << tag.id << " is there twice";
       refine_corners(pages[i], scanner(pages[i]), family.modules, tag.corners_px);
-      const auto corners = board.tags.at(tag.id).corners_in_stage();
+      const auto corners = board.tags.at(tag.id).corners_in_board();
       Eigen::Vector2d mean_error = Eigen::Vector2d::Zero();
       for (std::size_t c = 0; c < 4; ++c) {
         const Eigen::Vector2d error =
@@ -123,7 +123,7 @@ TEST(BoardPlan, LeavesTheMiddleFreeAndNumbersTheRimWithoutGaps) {
   EXPECT_EQ(plan.board.tags.rbegin()->first, 19);
   // Nothing of a tag reaches into the free middle, whose size is stated.
   for (const auto& [id, tag] : plan.board.tags) {
-    const Eigen::Vector3d centre = tag.stage_from_tag.translation();
+    const Eigen::Vector3d centre = tag.board_from_tag.translation();
     const bool beside = std::abs(centre.x()) >= (plan.free_width_mm + 30) / 2000 - 1e-9;
     const bool above = std::abs(centre.y()) >= (plan.free_height_mm + 30) / 2000 - 1e-9;
     EXPECT_TRUE(beside || above) << id;
@@ -159,7 +159,7 @@ TEST(BoardPlan, FollowsTheMeasuredRuler) {
   for (const auto& [id, tag] : plan.board.tags) {
     const auto& other = printed.tags.at(id);
     EXPECT_NEAR(other.size_m, 0.98 * tag.size_m, 1e-12);
-    EXPECT_TRUE(other.stage_from_tag.translation().isApprox(0.98 * tag.stage_from_tag.translation(),
+    EXPECT_TRUE(other.board_from_tag.translation().isApprox(0.98 * tag.board_from_tag.translation(),
                                                             1e-12));
   }
 }

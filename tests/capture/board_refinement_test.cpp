@@ -21,7 +21,7 @@ std::vector<std::vector<TagDetection>> ideal_views(const Board& board,
                                                    const core::CameraModel& camera, int count) {
   std::vector<std::vector<TagDetection>> views;
   for (int i = 0; i < count; ++i) {
-    const auto pose = look_at_stage(0.45 + 0.02 * (i % 3), (45 + 4 * (i % 5)) * kDegree,
+    const auto pose = look_at_board(0.45 + 0.02 * (i % 3), (45 + 4 * (i % 5)) * kDegree,
                                     2 * std::numbers::pi * i / count);
     std::vector<TagDetection> tags;
     for (const auto& [id, corners] : true_corners(board, camera, pose)) {
@@ -41,8 +41,8 @@ Board displaced(const Board& board, double shift_m, unsigned seed) {
     const Eigen::Vector3d shift(normal(random), normal(random), normal(random));
     const Eigen::Vector3d axis =
         Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized();
-    tag.stage_from_tag.translation() += shift_m * shift;
-    tag.stage_from_tag.rotate(Eigen::AngleAxisd(0.3 * kDegree * normal(random), axis));
+    tag.board_from_tag.translation() += shift_m * shift;
+    tag.board_from_tag.rotate(Eigen::AngleAxisd(0.3 * kDegree * normal(random), axis));
   }
   return result;
 }
@@ -55,8 +55,8 @@ double largest_difference_m(const Board& a, const Board& b) {
   Eigen::Index column = 0;
   for (const auto& [id, tag] : a.tags) {
     for (int c = 0; c < 4; ++c, ++column) {
-      from.col(column) = tag.corners_in_stage()[static_cast<std::size_t>(c)];
-      to.col(column) = b.tags.at(id).corners_in_stage()[static_cast<std::size_t>(c)];
+      from.col(column) = tag.corners_in_board()[static_cast<std::size_t>(c)];
+      to.col(column) = b.tags.at(id).corners_in_board()[static_cast<std::size_t>(c)];
     }
   }
   const Eigen::Affine3d motion(Eigen::umeyama(from, to, true));
@@ -110,10 +110,10 @@ TEST(BoardRefinement, FindsCurledPaper) {
   const Board flat = make_grid_board("tag36h11", 5, 3, 0.03, 0.04);
   Board curled = flat;
   for (auto& [id, tag] : curled.tags) {
-    const double angle = tag.stage_from_tag.translation().x() / 1.5;
-    tag.stage_from_tag.translation().x() = 1.5 * std::sin(angle);
-    tag.stage_from_tag.translation().z() = 1.5 * (1 - std::cos(angle));
-    tag.stage_from_tag.rotate(Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitY()));
+    const double angle = tag.board_from_tag.translation().x() / 1.5;
+    tag.board_from_tag.translation().x() = 1.5 * std::sin(angle);
+    tag.board_from_tag.translation().z() = 1.5 * (1 - std::cos(angle));
+    tag.board_from_tag.rotate(Eigen::AngleAxisd(-angle, Eigen::Vector3d::UnitY()));
   }
   const auto refinement = refine_board(flat, camera, ideal_views(curled, camera, 16));
   ASSERT_TRUE(refinement);
@@ -122,7 +122,7 @@ TEST(BoardRefinement, FindsCurledPaper) {
   EXPECT_LT(largest_difference_m(refinement->board, curled), 1e-8);
 }
 
-TEST(BoardRefinement, KeepsTheStageFrameOfTheGivenBoard) {
+TEST(BoardRefinement, KeepsTheBoardFrameOfTheGivenBoard) {
   // The refined corners lie on the given ones as well as any similarity can lay them: no mean
   // shift is left.
   const unsigned seed = 4;
@@ -134,8 +134,8 @@ TEST(BoardRefinement, KeepsTheStageFrameOfTheGivenBoard) {
   ASSERT_TRUE(refinement);
   Eigen::Vector3d mean_shift = Eigen::Vector3d::Zero();
   for (const auto& [id, tag] : given.tags) {
-    const auto before = tag.corners_in_stage();
-    const auto after = refinement->board.tags.at(id).corners_in_stage();
+    const auto before = tag.corners_in_board();
+    const auto after = refinement->board.tags.at(id).corners_in_board();
     for (std::size_t c = 0; c < 4; ++c) mean_shift += after[c] - before[c];
   }
   EXPECT_LT(mean_shift.norm() / 48, 1e-12);
@@ -180,8 +180,8 @@ TEST(BoardRefinement, LeavesTagsSeenTooRarelyInPlace) {
   const auto refinement = refine_board(given, camera, views);
   ASSERT_TRUE(refinement);
   EXPECT_EQ(refinement->tags, 8);
-  EXPECT_TRUE(refinement->board.tags.at(rare_id).stage_from_tag.isApprox(
-      given.tags.at(rare_id).stage_from_tag, 0));
+  EXPECT_TRUE(refinement->board.tags.at(rare_id).board_from_tag.isApprox(
+      given.tags.at(rare_id).board_from_tag, 0));
 }
 
 TEST(BoardRefinement, HasNoAnswerWithoutTagsSeenTogether) {

@@ -29,11 +29,11 @@ constexpr PictureSize kSize{1280, 720};
 
 /// The corners of a grid of tags as a camera sees them, those outside the picture left out.
 TargetView view_of(const Board& board, const core::CameraModel& camera,
-                   const Eigen::Isometry3d& camera_from_stage, int index) {
+                   const Eigen::Isometry3d& camera_from_board, int index) {
   TargetView view;
   view.frame_index = index;
-  for (const auto& [id, corners] : true_corners(board, camera, camera_from_stage)) {
-    const auto on_board = board.tags.at(id).corners_in_stage();
+  for (const auto& [id, corners] : true_corners(board, camera, camera_from_board)) {
+    const auto on_board = board.tags.at(id).corners_in_board();
     for (std::size_t c = 0; c < 4; ++c) {
       const Eigen::Vector2d& p = corners[c];
       if (p.x() < 0 || p.y() < 0 || p.x() > kSize.width_px - 1 || p.y() > kSize.height_px - 1) {
@@ -54,7 +54,7 @@ std::vector<TargetView> good_views(const core::CameraModel& camera, int count, d
   std::normal_distribution<double> noise(0, noise_px);
   std::vector<TargetView> views;
   for (int i = 0; i < count; ++i) {
-    const auto pose = look_at_stage(0.22 + 0.04 * (i % 4), (50 + 13 * (i % 3)) * kDegree,
+    const auto pose = look_at_board(0.22 + 0.04 * (i % 4), (50 + 13 * (i % 3)) * kDegree,
                                     2 * std::numbers::pi * i * 0.381966);
     views.push_back(view_of(board, camera, pose, i));
     for (Eigen::Vector2d& p : views.back().in_picture) {
@@ -142,7 +142,7 @@ TEST(Calibration, RefusesViewsThatAreAllAlike) {
   std::normal_distribution<double> noise(0, 0.2);
   std::vector<TargetView> views;
   for (int i = 0; i < 12; ++i) {
-    views.push_back(view_of(board, truth, look_at_stage(0.3, 88 * kDegree, 0.02 * i), i));
+    views.push_back(view_of(board, truth, look_at_board(0.3, 88 * kDegree, 0.02 * i), i));
     for (Eigen::Vector2d& p : views.back().in_picture) {
       p += Eigen::Vector2d(noise(random), noise(random));
     }
@@ -157,7 +157,7 @@ TEST(Calibration, RefusesViewsThatLeaveThePictureEmpty) {
   std::vector<TargetView> views;
   for (int i = 0; i < 12; ++i) {
     views.push_back(
-        view_of(board, truth, look_at_stage(0.6, (45 + 10 * (i % 4)) * kDegree, 0.6 * i), i));
+        view_of(board, truth, look_at_board(0.6, (45 + 10 * (i % 4)) * kDegree, 0.6 * i), i));
   }
   const auto found = calibrate_camera(views, kSize);
   ASSERT_TRUE(found);
@@ -183,10 +183,10 @@ TEST(SpreadViews, KeepsTheFewThatDiffer) {
   std::vector<TargetView> views;
   for (int i = 0; i < 60; ++i) {
     views.push_back(
-        view_of(board, camera, look_at_stage(0.4 + 1e-4 * i, 70 * kDegree, 1e-3 * i), i));
+        view_of(board, camera, look_at_board(0.4 + 1e-4 * i, 70 * kDegree, 1e-3 * i), i));
   }
   for (int i = 60; i < 66; ++i) {
-    views.push_back(view_of(board, camera, look_at_stage(0.4, 45 * kDegree, i), i));
+    views.push_back(view_of(board, camera, look_at_board(0.4, 45 * kDegree, i), i));
   }
   std::set<int> chosen;
   for (const TargetView& view : choose_spread_views(views, kSize, 12)) {

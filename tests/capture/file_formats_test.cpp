@@ -77,7 +77,7 @@ TEST(BoardFile, ReadsWhatItWrote) {
   const ScratchFolder scratch;
   Board board = make_grid_board("tag36h11", 3, 2, 0.0456, 0.0611);
   board.border_bits = 2;
-  board.tags[4].stage_from_tag.rotate(
+  board.tags[4].board_from_tag.rotate(
       Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, 2, 3).normalized()));
   const auto path = scratch.path() / "board.yaml";
   write_board(path, board);
@@ -88,7 +88,7 @@ TEST(BoardFile, ReadsWhatItWrote) {
   for (const auto& [id, tag] : board.tags) {
     EXPECT_NEAR(read.tags.at(id).size_m, tag.size_m, 1e-9);
     // Ten digits of numbers below one.
-    EXPECT_TRUE(read.tags.at(id).stage_from_tag.isApprox(tag.stage_from_tag, 1e-8));
+    EXPECT_TRUE(read.tags.at(id).board_from_tag.isApprox(tag.board_from_tag, 1e-8));
   }
 }
 
@@ -102,11 +102,11 @@ tag_bundles:
     layout: [{id: 7, size: 0.05, x: 0, y: 0, z: 0.3, qw: 0.7071068, qx: 0.7071068, qy: 0, qz: 0}]
 )"));
   ASSERT_EQ(board.tags.size(), 2U);
-  EXPECT_TRUE(board.tags.at(3).corners_in_stage()[0].isApprox(Eigen::Vector3d(0.08, 0.18, 0)));
+  EXPECT_TRUE(board.tags.at(3).corners_in_board()[0].isApprox(Eigen::Vector3d(0.08, 0.18, 0)));
   // A quarter turn about x sends the tag's y upwards: its upper right corner stands at z + size
   // / 2.
   EXPECT_TRUE(
-      board.tags.at(7).corners_in_stage()[2].isApprox(Eigen::Vector3d(0.025, 0, 0.325), 1e-6));
+      board.tags.at(7).corners_in_board()[2].isApprox(Eigen::Vector3d(0.025, 0, 0.325), 1e-6));
 }
 
 TEST(BoardFile, LaysOutKalibrsGrid) {
@@ -117,9 +117,9 @@ TEST(BoardFile, LaysOutKalibrsGrid) {
   EXPECT_EQ(board.family, "tag36h11");
   EXPECT_EQ(board.border_bits, 2);
   ASSERT_EQ(board.tags.size(), 30U);
-  EXPECT_TRUE(board.tags.at(0).corners_in_stage()[0].isZero(1e-15));
+  EXPECT_TRUE(board.tags.at(0).corners_in_board()[0].isZero(1e-15));
   // Pitch 0.08 * 1.25 = 0.1 m; id 13 = 2 * 6 + 1 stands in column 1, row 2 from below.
-  EXPECT_TRUE(board.tags.at(13).corners_in_stage()[0].isApprox(Eigen::Vector3d(0.1, 0.2, 0)));
+  EXPECT_TRUE(board.tags.at(13).corners_in_board()[0].isApprox(Eigen::Vector3d(0.1, 0.2, 0)));
 }
 
 TEST(BoardFile, RefusesEachFault) {
@@ -161,8 +161,8 @@ TEST(BoardFile, RefusesEachFault) {
 Trajectory::Entry entry_at(double stamp, double x) {
   Trajectory::Entry entry;
   entry.stamp = stamp;
-  entry.stage_from_camera.translation().x() = x;
-  entry.stage_from_camera.linear() =
+  entry.board_from_camera.translation().x() = x;
+  entry.board_from_camera.linear() =
       Eigen::AngleAxisd(x, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   return entry;
 }
@@ -177,7 +177,7 @@ TEST(TrajectoryFile, ReadsWhatItWrote) {
   for (std::size_t i = 0; i < entries.size(); ++i) {
     EXPECT_EQ(read.entries()[i].stamp, entries[i].stamp);
     // Twelve digits.
-    EXPECT_TRUE(read.entries()[i].stage_from_camera.isApprox(entries[i].stage_from_camera, 1e-10));
+    EXPECT_TRUE(read.entries()[i].board_from_camera.isApprox(entries[i].board_from_camera, 1e-10));
   }
 }
 
@@ -185,17 +185,17 @@ TEST(TrajectoryFile, TakesIntegersAsIndicesAndElseSeconds) {
   const ScratchFolder scratch;
   const Trajectory indices = read_trajectory(
       scratch.write("a.txt", "# comment\n\n4 1 0 0 0 0 0 1\r\n  2\t2 0 0 0 0 0 1\n"));
-  EXPECT_EQ(indices.stage_from_camera({{}, 99, 4}, 10)->translation().x(), 1);
-  EXPECT_EQ(indices.stage_from_camera({{}, 99, 2}, 10)->translation().x(), 2);
-  EXPECT_FALSE(indices.stage_from_camera({{}, 4, 3}, 10));
+  EXPECT_EQ(indices.board_from_camera({{}, 99, 4}, 10)->translation().x(), 1);
+  EXPECT_EQ(indices.board_from_camera({{}, 99, 2}, 10)->translation().x(), 2);
+  EXPECT_FALSE(indices.board_from_camera({{}, 4, 3}, 10));
 
   // At 10 frames per second an entry serves times up to 0.05 s away.
   const Trajectory seconds =
       read_trajectory(scratch.write("b.txt", "1 1 0 0 0 0 0 1\n1.5 2 0 0 0 0 0 1\n"));
-  EXPECT_EQ(seconds.stage_from_camera({{}, 1.04, 0}, 10)->translation().x(), 1);
-  EXPECT_EQ(seconds.stage_from_camera({{}, 1.46, 0}, 10)->translation().x(), 2);
-  EXPECT_FALSE(seconds.stage_from_camera({{}, 1.25, 1}, 10));
-  EXPECT_FALSE(seconds.stage_from_camera({{}, 9, 1}, 10));
+  EXPECT_EQ(seconds.board_from_camera({{}, 1.04, 0}, 10)->translation().x(), 1);
+  EXPECT_EQ(seconds.board_from_camera({{}, 1.46, 0}, 10)->translation().x(), 2);
+  EXPECT_FALSE(seconds.board_from_camera({{}, 1.25, 1}, 10));
+  EXPECT_FALSE(seconds.board_from_camera({{}, 9, 1}, 10));
 }
 
 TEST(TrajectoryFile, RefusesEachFault) {

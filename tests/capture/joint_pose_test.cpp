@@ -15,9 +15,9 @@ namespace {
 constexpr unsigned kSeed = 7;
 
 std::vector<TagDetection> exact_detections(const Board& board, const core::CameraModel& camera,
-                                           const Eigen::Isometry3d& camera_from_stage) {
+                                           const Eigen::Isometry3d& camera_from_board) {
   std::vector<TagDetection> detections;
-  for (const auto& [id, corners] : true_corners(board, camera, camera_from_stage)) {
+  for (const auto& [id, corners] : true_corners(board, camera, camera_from_board)) {
     detections.push_back({id, corners, 1});
   }
   return detections;
@@ -40,7 +40,7 @@ class JointPoseOf : public testing::TestWithParam<bool> {
     Board board = make_grid_board("tag36h11", 5, 4, 0.045, 0.058);
     // A bent print, as the solvers for points not in one plane need it.
     for (auto& [id, tag] : board.tags) {
-      if (bent) tag.stage_from_tag.translation().z() = 0.03 * (id % 3);
+      if (bent) tag.board_from_tag.translation().z() = 0.03 * (id % 3);
     }
     return board;
   }
@@ -55,10 +55,10 @@ TEST_P(JointPoseOf, ExactCornersIsExact) {
   std::uniform_real_distribution<double> unit(0, 1);
   for (int trial = 0; trial < 30; ++trial) {
     const Eigen::Isometry3d truth =
-        look_at_stage(0.4 + unit(random), 0.3 + 1.2 * unit(random), 6.28 * unit(random));
+        look_at_board(0.4 + unit(random), 0.3 + 1.2 * unit(random), 6.28 * unit(random));
     const auto pose = estimate_joint_pose(board, camera, exact_detections(board, camera, truth));
     ASSERT_TRUE(pose) << "trial " << trial << " seed " << kSeed;
-    const PoseError error = compare(pose->camera_from_stage, truth);
+    const PoseError error = compare(pose->camera_from_board, truth);
     EXPECT_LT(error.position_m, 1e-7);
     EXPECT_LT(error.angle_deg, 1e-5);
     EXPECT_EQ(pose->tag_ids.size(), board.tags.size());
@@ -70,27 +70,27 @@ INSTANTIATE_TEST_SUITE_P(Prints, JointPoseOf, testing::Bool());
 TEST(JointPose, DropsATagThatIsOff) {
   const Board board = make_grid_board("tag36h11", 5, 4, 0.045, 0.058);
   const core::CameraModel camera = make_camera(1280, 720, true);
-  const Eigen::Isometry3d truth = look_at_stage(0.6, 0.9, 0.3);
+  const Eigen::Isometry3d truth = look_at_board(0.6, 0.9, 0.3);
   auto detections = exact_detections(board, camera, truth);
   for (Eigen::Vector2d& corner : detections[7].corners_px) corner += Eigen::Vector2d(8, 6);
   const auto pose = estimate_joint_pose(board, camera, detections);
   ASSERT_TRUE(pose);
   EXPECT_EQ(pose->tag_ids.size(), 19U);
   EXPECT_EQ(std::count(pose->tag_ids.begin(), pose->tag_ids.end(), detections[7].id), 0);
-  EXPECT_LT(compare(pose->camera_from_stage, truth).position_m, 1e-6);
+  EXPECT_LT(compare(pose->camera_from_board, truth).position_m, 1e-6);
 }
 
 // Tags read as their neighbours are off by whole tags, more than a least-squares start survives.
 TEST(JointPose, SurvivesTagsWithSwappedIds) {
   const Board board = make_grid_board("tag36h11", 4, 3, 0.045, 0.058);
   const core::CameraModel camera = make_camera(1280, 720, true);
-  const Eigen::Isometry3d truth = look_at_stage(0.6, 0.9, 0.3);
+  const Eigen::Isometry3d truth = look_at_board(0.6, 0.9, 0.3);
   auto detections = exact_detections(board, camera, truth);
   std::swap(detections[0].corners_px, detections[11].corners_px);
   std::swap(detections[2].corners_px, detections[5].corners_px);
   const auto pose = estimate_joint_pose(board, camera, detections);
   ASSERT_TRUE(pose);
-  EXPECT_LT(compare(pose->camera_from_stage, truth).position_m, 1e-6);
+  EXPECT_LT(compare(pose->camera_from_board, truth).position_m, 1e-6);
 }
 
 // When half of the tags stand elsewhere than the board says, dropping must not hide it: at most a
@@ -100,10 +100,10 @@ TEST(JointPose, DoesNotExplainAWrongBoardAway) {
   const core::CameraModel camera = make_camera(1280, 720, true);
   Board printed = board;
   for (auto& [id, tag] : printed.tags) {
-    if (id % 2 == 0) tag.stage_from_tag.translation().x() += 0.004 * (id % 4 == 0 ? 1 : -1);
+    if (id % 2 == 0) tag.board_from_tag.translation().x() += 0.004 * (id % 4 == 0 ? 1 : -1);
   }
   const auto pose = estimate_joint_pose(
-      board, camera, exact_detections(printed, camera, look_at_stage(0.5, 1, 0.3)));
+      board, camera, exact_detections(printed, camera, look_at_board(0.5, 1, 0.3)));
   ASSERT_TRUE(pose);
   EXPECT_GE(pose->tag_ids.size(), 8U);
   EXPECT_GT(pose->rms_px, 2);
@@ -123,7 +123,7 @@ TEST(JointPose, SurvivesCollapsedCorners) {
   TagDetection point{0, {}, 1};
   point.corners_px.fill({320, 180});
   const auto pose = estimate_joint_pose(board, make_camera(640, 360, false), {point});
-  EXPECT_TRUE(!pose || pose->camera_from_stage.matrix().allFinite());
+  EXPECT_TRUE(!pose || pose->camera_from_board.matrix().allFinite());
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace sheen::capture::test {
 namespace {
 
 const core::CameraModel kCamera = make_camera(640, 360, true);
-const Eigen::Isometry3d kPose = look_at_stage(0.5, 1.0, 0.4);
+const Eigen::Isometry3d kPose = look_at_board(0.5, 1.0, 0.4);
 
 Board stage() {
   return make_grid_board("tag36h11", 5, 4, 0.045, 0.058);
@@ -36,7 +36,7 @@ TEST(TagPoseEstimator, FindsThePoseOfARenderedBoard) {
   std::vector<double> angle_deg;
   for (int view = 0; view < 5; ++view) {
     const Eigen::Isometry3d truth =
-        look_at_stage(0.5, (35 + 11 * view) * std::numbers::pi / 180, 1.3 * view);
+        look_at_board(0.5, (35 + 11 * view) * std::numbers::pi / 180, 1.3 * view);
     Photograph photograph;
     photograph.noise = 2;
     photograph.seed = static_cast<unsigned>(view) + 1;
@@ -45,10 +45,10 @@ TEST(TagPoseEstimator, FindsThePoseOfARenderedBoard) {
     const auto& pose = std::get<FramePose>(result);
     EXPECT_EQ(pose.tags, 20);
     EXPECT_LT(pose.reprojection_px, 0.2);
-    const Eigen::Isometry3d error = pose.camera_from_stage * truth.inverse();
+    const Eigen::Isometry3d error = pose.camera_from_board * truth.inverse();
     position_mm.push_back(
         1e3 *
-        (pose.camera_from_stage.inverse().translation() - truth.inverse().translation()).norm());
+        (pose.camera_from_board.inverse().translation() - truth.inverse().translation()).norm());
     angle_deg.push_back(Eigen::AngleAxisd(error.linear()).angle() * 180 / std::numbers::pi);
   }
   std::sort(position_mm.begin(), position_mm.end());
@@ -92,7 +92,7 @@ TEST(TagPoseEstimator, RefusesASmearedPicture) {
 TEST(TagPoseEstimator, RefusesAWrongBoard) {
   Board board = stage();
   for (auto& [id, tag] : board.tags) {
-    tag.stage_from_tag.translation().x() *= 1 + 0.1 * (id % 3);
+    tag.board_from_tag.translation().x() *= 1 + 0.1 * (id % 3);
   }
   expect_refused(estimate(board, render_board(stage(), kCamera, kPose, {})),
                  PoseRejection::reprojection);
@@ -103,7 +103,7 @@ TEST(TagPoseEstimator, RefusesAWrongBoard) {
 TEST(TagEdgeWidth, MeasuresAGaussianBlur) {
   const Board board = make_grid_board("tag36h11", 2, 1, 0.14, 0.18);
   const core::CameraModel camera = make_camera(640, 360, false);
-  const Eigen::Isometry3d pose = look_at_stage(0.5, 1.5, std::numbers::pi / 2);
+  const Eigen::Isometry3d pose = look_at_board(0.5, 1.5, std::numbers::pi / 2);
   std::vector<TagDetection> tags;
   for (const auto& [id, corners] : true_corners(board, camera, pose))
     tags.push_back({id, corners, 1});
@@ -129,12 +129,12 @@ TEST(TagEdgeWidth, HasNoAnswerWithoutEdges) {
 TEST(RecordedPoseEstimator, ReturnsThePoseInverted) {
   Trajectory::Entry entry;
   entry.stamp = 3;
-  entry.stage_from_camera.translation() = Eigen::Vector3d(1, 2, 3);
+  entry.board_from_camera.translation() = Eigen::Vector3d(1, 2, 3);
   const auto estimator = make_recorded_pose_estimator(Trajectory({entry}), 30);
   const auto result = estimator->estimate({cv::Mat(), 0.1, 3});
   ASSERT_TRUE(std::holds_alternative<FramePose>(result));
   // The inverse of a translation is the opposite one.
-  EXPECT_TRUE(std::get<FramePose>(result).camera_from_stage.translation().isApprox(
+  EXPECT_TRUE(std::get<FramePose>(result).camera_from_board.translation().isApprox(
       Eigen::Vector3d(-1, -2, -3)));
   expect_refused(estimator->estimate({cv::Mat(), 0.1, 4}), PoseRejection::no_pose_in_file);
 }

@@ -37,10 +37,10 @@ double median(std::vector<double> values) {
 
 struct Errors {
   std::vector<double> position_mm, angle_deg;
-  void add(const Eigen::Isometry3d& camera_from_stage, const Eigen::Isometry3d& stage_from_camera) {
+  void add(const Eigen::Isometry3d& camera_from_board, const Eigen::Isometry3d& board_from_camera) {
     position_mm.push_back(
-        1e3 * (camera_from_stage.inverse().translation() - stage_from_camera.translation()).norm());
-    const Eigen::Isometry3d error = camera_from_stage * stage_from_camera;
+        1e3 * (camera_from_board.inverse().translation() - board_from_camera.translation()).norm());
+    const Eigen::Isometry3d error = camera_from_board * board_from_camera;
     angle_deg.push_back(Eigen::AngleAxisd(error.linear()).angle() * 180 / std::numbers::pi);
   }
 };
@@ -72,7 +72,7 @@ TEST_P(PhotographsOf, JointPoseAgreesWithTheAdjustment) {
     const auto pose =
         estimate_joint_pose(board, session.camera, drop_ambiguous(detector.detect(grey)));
     ASSERT_TRUE(pose) << "frame " << frame.index;
-    errors.add(pose->camera_from_stage, truth.stage_from_camera(frame, 30).value());
+    errors.add(pose->camera_from_board, truth.board_from_camera(frame, 30).value());
   });
   EXPECT_LT(median(errors.position_mm), 0.1);
   EXPECT_LT(median(errors.angle_deg), 0.01);
@@ -92,8 +92,8 @@ TEST_P(PhotographsOf, EstimatorStaysCloseToTheAdjustment) {
   for_each_frame(session, [&](const Frame& frame) {
     const auto result = estimator->estimate(frame);
     ASSERT_TRUE(std::holds_alternative<FramePose>(result)) << "frame " << frame.index;
-    errors.add(std::get<FramePose>(result).camera_from_stage,
-               truth.stage_from_camera(frame, 30).value());
+    errors.add(std::get<FramePose>(result).camera_from_board,
+               truth.board_from_camera(frame, 30).value());
   });
   EXPECT_LT(median(errors.position_mm), 0.3);
   EXPECT_LT(median(errors.angle_deg), 0.03);
@@ -102,9 +102,9 @@ TEST_P(PhotographsOf, EstimatorStaysCloseToTheAdjustment) {
 Board nominal(const Board& surveyed) {
   Board flat = surveyed;
   for (auto& [id, tag] : flat.tags) {
-    const Eigen::Vector3d place = tag.stage_from_tag.translation();
-    tag.stage_from_tag = Eigen::Isometry3d::Identity();
-    tag.stage_from_tag.translation() << 0.04 * std::round(place.x() / 0.0402),
+    const Eigen::Vector3d place = tag.board_from_tag.translation();
+    tag.board_from_tag = Eigen::Isometry3d::Identity();
+    tag.board_from_tag.translation() << 0.04 * std::round(place.x() / 0.0402),
         0.04 * std::round(place.y() / 0.0402), 0;
   }
   return flat;
@@ -173,7 +173,7 @@ TEST(HandheldVideo, DetectedPosesAgreeWithTheReference) {
     finder.look_at(*frame);
     const auto pose = estimate_joint_pose(board, session.camera, finder.find());
     ASSERT_TRUE(pose) << "frame " << frame->index;
-    errors.add(pose->camera_from_stage, reference.stage_from_camera(*frame, 30).value());
+    errors.add(pose->camera_from_board, reference.board_from_camera(*frame, 30).value());
   }
   EXPECT_LT(median(errors.position_mm), 2.5);
   EXPECT_LT(median(errors.angle_deg), 0.15);
@@ -187,8 +187,8 @@ std::vector<RegistrationView> slow_views(const Session& session) {
   const auto source = open_frames(session, 0, 8);
   std::vector<RegistrationView> views;
   while (const auto frame = source->next()) {
-    const auto stage_from_camera = reference.stage_from_camera(*frame, 30);
-    views.push_back({frame->image.clone(), stage_from_camera.value().inverse(), 1});
+    const auto board_from_camera = reference.board_from_camera(*frame, 30);
+    views.push_back({frame->image.clone(), board_from_camera.value().inverse(), 1});
   }
   return views;
 }
@@ -202,7 +202,7 @@ TEST(HandheldVideo, RegistersTheDragonFromTwoStarts) {
   const Session session = open_session(folder);
   const core::Mesh mesh = core::read_mesh(session.mesh);
   const auto views = slow_views(session);
-  const Eigen::Isometry3d& reference = session.stage_from_object;
+  const Eigen::Isometry3d& reference = session.board_from_object;
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   for (const auto& p : mesh.positions) centre += p.cast<double>();
   centre = reference * (centre / static_cast<double>(mesh.positions.size()));
@@ -217,10 +217,10 @@ TEST(HandheldVideo, RegistersTheDragonFromTwoStarts) {
   EXPECT_GT(from_afar->motion_px, 5);
   double apart_px = 0;
   for (const auto& p : mesh.positions) {
-    const auto a = session.camera.project(views[0].camera_from_stage *
-                                          from_reference->stage_from_object * p.cast<double>());
-    const auto b = session.camera.project(views[0].camera_from_stage *
-                                          from_afar->stage_from_object * p.cast<double>());
+    const auto a = session.camera.project(views[0].camera_from_board *
+                                          from_reference->board_from_object * p.cast<double>());
+    const auto b = session.camera.project(views[0].camera_from_board *
+                                          from_afar->board_from_object * p.cast<double>());
     apart_px += (*a - *b).norm() / static_cast<double>(mesh.positions.size());
   }
   EXPECT_LT(apart_px, 0.5);

@@ -75,16 +75,16 @@ struct Photographs {
       : Photographs(synthetic::make_scene(options), count) {}
 
   Photographs(const synthetic::Scene& scene, int count)
-      : mesh(scene.object()), truth(scene.stage_from_object()) {
+      : mesh(scene.object()), truth(scene.board_from_object()) {
     const synthetic::CameraPath path(synthetic::recording_path(7), scene.object_centre(),
                                      scene.object_radius_m());
     const synthetic::Photographer photographer(camera);
     for (int i = 0; i < count; ++i) {
       const auto seed = static_cast<std::uint32_t>(i);
-      const Eigen::Isometry3d stage_from_camera = path.stage_from_camera((i + 0.5) / count);
-      const auto exposure = photographer.expose(scene, stage_from_camera, 4, seed, 1);
+      const Eigen::Isometry3d board_from_camera = path.board_from_camera((i + 0.5) / count);
+      const auto exposure = photographer.expose(scene, board_from_camera, 4, seed, 1);
       views.push_back({synthetic::develop(exposure.light, synthetic::SensorNoise{}, seed),
-                       stage_from_camera.inverse(), 1});
+                       board_from_camera.inverse(), 1});
     }
   }
 
@@ -126,8 +126,8 @@ void expect_found_from_all_starts(const Photographs& photographs, double turn_ra
     const auto found =
         register_object(photographs.mesh, photographs.camera, photographs.views, start, {});
     ASSERT_TRUE(found);
-    EXPECT_LT(photographs.shift_error_m(found->stage_from_object), 0.2e-3);
-    EXPECT_LT(photographs.turn_error_rad(found->stage_from_object), turn_rad);
+    EXPECT_LT(photographs.shift_error_m(found->board_from_object), 0.2e-3);
+    EXPECT_LT(photographs.turn_error_rad(found->board_from_object), turn_rad);
     EXPECT_LT(found->residual_px, 0.5);
     EXPECT_NEAR(found->rotation_rad, 5 * kDegree, turn_rad);
     EXPECT_NEAR(found->translation_m, 0.010, 0.3e-3);
@@ -163,7 +163,7 @@ TEST(Registration, TellsItsUncertainty) {
     const auto found = register_object(all.mesh, all.camera, half, all.truth, {});
     ASSERT_TRUE(found);
     EXPECT_GT(found->sigma_m, 0);
-    EXPECT_LT(all.shift_error_m(found->stage_from_object), 5 * found->sigma_m + 1e-5);
+    EXPECT_LT(all.shift_error_m(found->board_from_object), 5 * found->sigma_m + 1e-5);
   }
 }
 
@@ -171,12 +171,12 @@ TEST(Registration, LooksPastAViewWithAWrongPose) {
   synthetic::SyntheticOptions options;
   options.vertices = 4000;
   Photographs photographs(options, 8);
-  photographs.views[3].camera_from_stage.translation().x() += 0.02;  // 17 px
+  photographs.views[3].camera_from_board.translation().x() += 0.02;  // 17 px
   const auto found = register_object(photographs.mesh, photographs.camera, photographs.views,
                                      photographs.start(0.005, 3 * kDegree, 5), {});
   ASSERT_TRUE(found);
   EXPECT_EQ(found->views, 7);
-  EXPECT_LT(photographs.shift_error_m(found->stage_from_object), 0.3e-3);
+  EXPECT_LT(photographs.shift_error_m(found->board_from_object), 0.3e-3);
 }
 
 TEST(Registration, HasNoAnswerForPicturesWithoutTheObject) {
@@ -233,7 +233,7 @@ TEST(Placement, PairsGiveTheMotionBack) {
     pairs.push_back({p, motion * p});
   }
   const auto placement = place_by_pairs(pairs, "pairs.txt");
-  EXPECT_TRUE(placement.stage_from_object.isApprox(motion, 1e-12));
+  EXPECT_TRUE(placement.board_from_object.isApprox(motion, 1e-12));
   EXPECT_LT(placement.rms_m, 1e-12);
 }
 
@@ -253,15 +253,15 @@ TEST(Placement, RefusesPairsThatSayTooLittle) {
 
 TEST(Placement, UprightStandsOnThePaperInTheMiddle) {
   const core::Mesh mesh = bumpy_ball();
-  const Eigen::Isometry3d stage_from_object = place_upright(mesh, 0.7);
+  const Eigen::Isometry3d board_from_object = place_upright(mesh, 0.7);
   Eigen::AlignedBox3d box;
   for (const auto& p : mesh.positions) box.extend(p.cast<double>());
   double lowest = 1;
   for (const auto& p : mesh.positions) {
-    lowest = std::min(lowest, (stage_from_object * p.cast<double>()).z());
+    lowest = std::min(lowest, (board_from_object * p.cast<double>()).z());
   }
   EXPECT_NEAR(lowest, 0, 1e-9);
-  EXPECT_LT((stage_from_object * box.center()).head<2>().norm(), 1e-12);
+  EXPECT_LT((board_from_object * box.center()).head<2>().norm(), 1e-12);
 }
 
 TEST(ViewChoice, TakesTheSlowestOfEveryStretchAndTrustsItMost) {
@@ -272,7 +272,7 @@ TEST(ViewChoice, TakesTheSlowestOfEveryStretchAndTrustsItMost) {
   for (int i = 0; i < 10; ++i) {
     PosedFrameIndex frame;
     frame.index = i;
-    frame.camera_from_stage.translation() << x, 0, 0.5;
+    frame.camera_from_board.translation() << x, 0, 0.5;
     frames.push_back(frame);
     x += i == 2 || i == 3 || i == 7 ? 0 : 0.01;
   }

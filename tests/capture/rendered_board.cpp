@@ -35,7 +35,7 @@ cv::Mat draw_code(const Board& board, int id) {
 }
 
 struct PrintedTag {
-  Eigen::Isometry3d tag_from_stage;
+  Eigen::Isometry3d tag_from_board;
   double size_m;
   int modules;  // across the square, which is the middle of the code
   cv::Mat code;
@@ -46,13 +46,13 @@ class Print {
   explicit Print(const Board& board) {
     const int modules = find_tag_family(board.family, board.border_bits).value().modules;
     for (const auto& [id, tag] : board.tags) {
-      tags_.push_back({tag.stage_from_tag.inverse(), tag.size_m, modules, draw_code(board, id)});
+      tags_.push_back({tag.board_from_tag.inverse(), tag.size_m, modules, draw_code(board, id)});
     }
   }
 
-  [[nodiscard]] bool is_black(const Eigen::Vector3d& stage) const {
+  [[nodiscard]] bool is_black(const Eigen::Vector3d& board) const {
     for (const PrintedTag& tag : tags_) {
-      const Eigen::Vector3d p = tag.tag_from_stage * stage;
+      const Eigen::Vector3d p = tag.tag_from_board * board;
       const double column = p.x() / tag.size_m * tag.modules + tag.code.cols / 2.0;
       const double row = tag.code.rows / 2.0 - p.y() / tag.size_m * tag.modules;
       if (column < 0 || row < 0 || column >= tag.code.cols || row >= tag.code.rows) continue;
@@ -104,9 +104,9 @@ void finish(cv::Mat& picture, const Photograph& photograph) {
 }  // namespace
 
 cv::Mat render_board(const Board& board, const core::CameraModel& camera,
-                     const Eigen::Isometry3d& camera_from_stage, const Photograph& photograph) {
+                     const Eigen::Isometry3d& camera_from_board, const Photograph& photograph) {
   const Print print(board);
-  const Eigen::Isometry3d stage_from_camera = camera_from_stage.inverse();
+  const Eigen::Isometry3d board_from_camera = camera_from_board.inverse();
   const std::vector<cv::Point2d> lattice = undistort_lattice(camera);
   const auto stride = static_cast<std::size_t>(camera.width_px()) + 1;
   const int n = photograph.supersampling;
@@ -124,9 +124,9 @@ cv::Mat render_board(const Board& board, const core::CameraModel& camera,
         const cv::Point2d ideal =
             (1 - v) * ((1 - u) * upper[0] + u * upper[1]) + v * ((1 - u) * lower[0] + u * lower[1]);
         const Eigen::Vector3d ray =
-            stage_from_camera.linear() * Eigen::Vector3d(ideal.x, ideal.y, 1);
-        const double depth = -stage_from_camera.translation().z() / ray.z();
-        if (depth > 0) black += print.is_black(stage_from_camera.translation() + depth * ray);
+            board_from_camera.linear() * Eigen::Vector3d(ideal.x, ideal.y, 1);
+        const double depth = -board_from_camera.translation().z() / ray.z();
+        if (depth > 0) black += print.is_black(board_from_camera.translation() + depth * ray);
       }
       const double share = static_cast<double>(black) / (n * n);
       picture.at<float>(y, x) =
@@ -143,12 +143,12 @@ cv::Mat render_board(const Board& board, const core::CameraModel& camera,
 
 std::map<int, std::array<Eigen::Vector2d, 4>> true_corners(
     const Board& board, const core::CameraModel& camera,
-    const Eigen::Isometry3d& camera_from_stage) {
+    const Eigen::Isometry3d& camera_from_board) {
   std::map<int, std::array<Eigen::Vector2d, 4>> corners;
   for (const auto& [id, tag] : board.tags) {
     std::vector<cv::Point3d> points;
-    for (const Eigen::Vector3d& corner : tag.corners_in_stage()) {
-      const Eigen::Vector3d p = camera_from_stage * corner;
+    for (const Eigen::Vector3d& corner : tag.corners_in_board()) {
+      const Eigen::Vector3d p = camera_from_board * corner;
       points.emplace_back(p.x(), p.y(), p.z());
     }
     std::vector<cv::Point2d> projected;
@@ -167,7 +167,7 @@ Board make_grid_board(const std::string& family, int columns, int rows, double s
     for (int column = 0; column < columns; ++column) {
       Board::Tag tag;
       tag.size_m = size_m;
-      tag.stage_from_tag.translation() = Eigen::Vector3d((column - (columns - 1) / 2.0) * pitch_m,
+      tag.board_from_tag.translation() = Eigen::Vector3d((column - (columns - 1) / 2.0) * pitch_m,
                                                          ((rows - 1) / 2.0 - row) * pitch_m, 0);
       board.tags[row * columns + column] = tag;
     }
@@ -185,16 +185,16 @@ core::CameraModel make_camera(int width_px, int height_px, bool distorted) {
   return core::CameraModel(intrinsics);
 }
 
-Eigen::Isometry3d look_at_stage(double distance_m, double elevation, double azimuth) {
+Eigen::Isometry3d look_at_board(double distance_m, double elevation, double azimuth) {
   const Eigen::Vector3d eye =
       distance_m * Eigen::Vector3d(std::cos(elevation) * std::cos(azimuth),
                                    std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
-  Eigen::Isometry3d stage_from_camera = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d board_from_camera = Eigen::Isometry3d::Identity();
   const Eigen::Vector3d forward = -eye.normalized();
   const Eigen::Vector3d right = forward.cross(Eigen::Vector3d::UnitZ()).normalized();
-  stage_from_camera.linear() << right, forward.cross(right), forward;
-  stage_from_camera.translation() = eye;
-  return stage_from_camera.inverse();
+  board_from_camera.linear() << right, forward.cross(right), forward;
+  board_from_camera.translation() = eye;
+  return board_from_camera.inverse();
 }
 
 }  // namespace sheen::capture::test

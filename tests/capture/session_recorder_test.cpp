@@ -45,7 +45,7 @@ TEST(SessionRecorder, IsASessionFromTheStart) {
   SessionRecorder recorder(folder, recording_setup(scratch), kFps);
   const Session session = open_session(folder);
   EXPECT_TRUE(session.warnings.empty());
-  EXPECT_EQ(session.stage_from_object.translation(), Eigen::Vector3d(0.5, 0, 0));
+  EXPECT_EQ(session.board_from_object.translation(), Eigen::Vector3d(0.5, 0, 0));
   EXPECT_EQ(session.camera.width_px(), kRecordedSize.width_px);
   expect_bad_input([&] { open_frames(session); }, "frames.csv", "has 0 frames");
 }

@@ -106,7 +106,7 @@ TEST(Session, ReadsACompleteOne) {
   EXPECT_EQ(session.camera.width_px(), kWidth);
   EXPECT_EQ(session.board, files.folder() / "board.yaml");
   EXPECT_FALSE(session.poses);
-  EXPECT_EQ(session.stage_from_object.translation(), Eigen::Vector3d(0.5, 0, 0));
+  EXPECT_EQ(session.board_from_object.translation(), Eigen::Vector3d(0.5, 0, 0));
   EXPECT_TRUE(session.warnings.empty());
 }
 

@@ -90,7 +90,7 @@ TEST_F(SyntheticSession, OpensAsASession) {
   const Session held_out = open_session(folder_ / "s" / "held_out");
   EXPECT_TRUE(held_out.image_pattern);
   EXPECT_TRUE(held_out.poses);
-  EXPECT_TRUE(held_out.stage_from_object.isApprox(session.stage_from_object, 1e-12));
+  EXPECT_TRUE(held_out.board_from_object.isApprox(session.board_from_object, 1e-12));
   EXPECT_EQ(core::read_mesh(held_out.mesh).positions, core::read_mesh(session.mesh).positions);
   EXPECT_TRUE(open_frames(held_out)->next());
 }
@@ -118,7 +118,7 @@ TEST_F(SyntheticSession, InterruptedWorkLeavesWhatWasThere) {
   EXPECT_EQ(contents(folder_), before);
 }
 
-TEST_F(SyntheticSession, PutsAMeshOfOnesOwnOnTheStage) {
+TEST_F(SyntheticSession, PutsAMeshOfOnesOwnOnTheBoard) {
   // A knot turned into somebody's scan: off centre, below the ground.
   core::Mesh scan = torus_knot(1000);
   for (Eigen::Vector3f& p : scan.positions) p += Eigen::Vector3f(1, -2, -0.5f);
@@ -130,10 +130,10 @@ TEST_F(SyntheticSession, PutsAMeshOfOnesOwnOnTheStage) {
   for (const Eigen::Vector3f& p : scene.object().positions) box.extend(p.cast<double>());
   EXPECT_NEAR(box.center().x(), 1, 0.01);  // the file's coordinates are kept
 
-  // The middle of its foot stands on the origin: p_stage = R_z (p - foot) leaves z of the foot.
+  // The middle of its foot stands on the origin: p_board = R_z (p - foot) leaves z of the foot.
   const Eigen::Vector3d foot(box.center().x(), box.center().y(), box.min().z());
-  EXPECT_LT((scene.stage_from_object() * foot).norm(), 1e-6);
-  EXPECT_TRUE((scene.stage_from_object().linear() * Eigen::Vector3d::UnitZ())
+  EXPECT_LT((scene.board_from_object() * foot).norm(), 1e-6);
+  EXPECT_TRUE((scene.board_from_object().linear() * Eigen::Vector3d::UnitZ())
                   .isApprox(Eigen::Vector3d::UnitZ()));
 
   // Millimetres taken for metres are refused.
@@ -157,7 +157,7 @@ TEST_F(SyntheticSession, SessionMeshMayBeCoarserThanWhatIsPhotographed) {
     fine.erase(mesh);
     coarse.erase(mesh);
   }
-  // Pictures, poses and the place on the stage are those of the fine object.
+  // Pictures, poses and the place on the board are those of the fine object.
   EXPECT_EQ(fine, coarse);
   options.mesh_vertices = 20;
   EXPECT_THROW(options.check(), std::invalid_argument);

@@ -195,7 +195,7 @@ TEST(CameraPath, StaysInItsBandAndMovesSmoothly) {
   const CameraPath path(recording_path(1), centre, radius);
   std::vector<Eigen::Vector3d> eyes;
   for (int i = 0; i < frames; ++i) {
-    const Eigen::Isometry3d pose = path.stage_from_camera(i / (frames - 1.0));
+    const Eigen::Isometry3d pose = path.board_from_camera(i / (frames - 1.0));
     const Eigen::Vector3d outward = pose.translation() - centre;
     const double elevation_deg = std::asin(outward.z() / outward.norm()) * 180 / std::numbers::pi;
     EXPECT_GT(elevation_deg, 25);
@@ -231,7 +231,7 @@ class SceneTest : public testing::Test {
   }
   static Eigen::Isometry3d view(double t) {
     return CameraPath(recording_path(1), scene_->object_centre(), scene_->object_radius_m())
-        .stage_from_camera(t);
+        .board_from_camera(t);
   }
   inline static std::unique_ptr<Scene> scene_;
 };
@@ -316,7 +316,7 @@ TEST_F(SceneTest, DetectorFindsTheTagsWhereTheyProject) {
     if ((wide & cv::Rect(0, 0, grey.cols, grey.rows)) != wide) continue;
     if (cv::countNonZero(exposure.object(wide)) > 0) continue;
 
-    const auto corners = scene_->board().tags.at(detection.id).corners_in_stage();
+    const auto corners = scene_->board().tags.at(detection.id).corners_in_board();
     for (std::size_t i = 0; i < 4; ++i) {
       const auto expected = camera.project(pose.inverse() * corners[i]);
       ASSERT_TRUE(expected);

@@ -16,16 +16,16 @@ namespace {
 struct Scene {
   Board board;
   core::CameraModel camera = make_camera(640, 360, true);
-  Eigen::Isometry3d camera_from_stage = look_at_stage(0.45, 55 * std::numbers::pi / 180, 0.4);
+  Eigen::Isometry3d camera_from_board = look_at_board(0.45, 55 * std::numbers::pi / 180, 0.4);
   cv::Mat grey;
   std::map<int, std::array<Eigen::Vector2d, 4>> truth;
   TagFamily family;
   std::vector<TagDetection> tags;
 
   explicit Scene(Board printed, const Photograph& photograph = {}) : board(std::move(printed)) {
-    cv::cvtColor(render_board(board, camera, camera_from_stage, photograph), grey,
+    cv::cvtColor(render_board(board, camera, camera_from_board, photograph), grey,
                  cv::COLOR_BGR2GRAY);
-    truth = true_corners(board, camera, camera_from_stage);
+    truth = true_corners(board, camera, camera_from_board);
     family = find_tag_family(board.family, board.border_bits).value();
     tags = TagDetector(family).detect(grey);
   }

@@ -17,9 +17,9 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 
 cv::Mat grey_picture(const Board& board, const core::CameraModel& camera,
-                     const Eigen::Isometry3d& camera_from_stage, const Photograph& photograph) {
+                     const Eigen::Isometry3d& camera_from_board, const Photograph& photograph) {
   cv::Mat grey;
-  cv::cvtColor(render_board(board, camera, camera_from_stage, photograph), grey,
+  cv::cvtColor(render_board(board, camera, camera_from_board, photograph), grey,
                cv::COLOR_BGR2GRAY);
   return grey;
 }
@@ -29,12 +29,12 @@ TagTracker make_tracker(const Board& board, const core::CameraModel& camera) {
 }
 
 /// A prediction that is off: turned and moved by what a hand does between two frames.
-Eigen::Isometry3d disturbed(const Eigen::Isometry3d& camera_from_stage, double degrees,
+Eigen::Isometry3d disturbed(const Eigen::Isometry3d& camera_from_board, double degrees,
                             double metres) {
   Twist twist;
   twist.head<3>() = degrees * kDegree * Eigen::Vector3d(0.6, -0.64, 0.48);
   twist.tail<3>() = metres * Eigen::Vector3d(-0.48, 0.6, 0.64);
-  return moved(camera_from_stage, twist);
+  return moved(camera_from_board, twist);
 }
 
 double position_error_mm(const Eigen::Isometry3d& estimate, const Eigen::Isometry3d& truth) {
@@ -72,7 +72,7 @@ class TrackedStage : public testing::Test {
   static Board stage() { return make_grid_board("tag36h11", 5, 4, 0.045, 0.058); }
 
   core::CameraModel camera_ = make_camera(640, 360, true);
-  Eigen::Isometry3d pose_ = look_at_stage(0.45, 1.0, 0.4);
+  Eigen::Isometry3d pose_ = look_at_board(0.45, 1.0, 0.4);
   TagTracker tracker_ = make_tracker(stage(), camera_);
 };
 
@@ -81,7 +81,7 @@ class TrackedStage : public testing::Test {
 TEST(TagTracker, MeasuresCornersOf24TagsToATwentiethOfAPixel) {
   const Board board = make_grid_board("tag36h11", 6, 4, 0.045, 0.058);
   const core::CameraModel camera = make_camera(1280, 720, true);
-  const Eigen::Isometry3d truth = look_at_stage(0.5, 0.9, 0.7);
+  const Eigen::Isometry3d truth = look_at_board(0.5, 0.9, 0.7);
   Photograph photograph;
   photograph.blur_sigma_px = 0.7;
   photograph.noise = 3;
@@ -93,15 +93,15 @@ TEST(TagTracker, MeasuresCornersOf24TagsToATwentiethOfAPixel) {
   EXPECT_LE(corner_rms_px(tracker.corners(), true_corners(board, camera, truth)), 0.06);
   // 96 corners of 0.06 px at 1000 px focal length and 0.5 m: some 0.06 / sqrt(96) 0.5 mm across,
   // ten times more where the board is seen from the side.
-  EXPECT_LT(position_error_mm(pose->camera_from_stage, truth), 0.03);
-  EXPECT_LT(angle_error_deg(pose->camera_from_stage, truth), 0.005);
+  EXPECT_LT(position_error_mm(pose->camera_from_board, truth), 0.03);
+  EXPECT_LT(angle_error_deg(pose->camera_from_board, truth), 0.005);
 }
 
 // What the tracker reports of its fit is what its corners say.
 TEST_F(TrackedStage, ReportsTheResidualsOfItsCorners) {
   const auto pose = tracker_.track(grey_picture(stage(), camera_, pose_, noisy()), pose_);
   ASSERT_TRUE(pose);
-  const auto projected = true_corners(stage(), camera_, pose->camera_from_stage);
+  const auto projected = true_corners(stage(), camera_, pose->camera_from_board);
   EXPECT_NEAR(pose->reprojection_px, corner_rms_px(tracker_.corners(), projected), 1e-9);
 }
 
@@ -124,7 +124,7 @@ TEST_F(TrackedStage, ToneCurvesDoNotMoveTheCamera) {
   EXPECT_GT(from_bent->reprojection_px, 0.2);  // the corners show it
   // Taken for a change of distance, a third of a pixel on tags of 45 px at 0.45 m is up to
   // 2 x 0.33 / 45 x 450 = 6.6 mm for one tag and some tenths of a millimetre for the whole board.
-  EXPECT_LT(position_error_mm(from_bent->camera_from_stage, from_linear->camera_from_stage), 0.1);
+  EXPECT_LT(position_error_mm(from_bent->camera_from_board, from_linear->camera_from_board), 0.1);
 }
 
 // A hand: a dark arm with bright fingers over the middle of the board.
@@ -138,12 +138,12 @@ TEST_F(TrackedStage, PassesOverCoveredTags) {
   ASSERT_TRUE(pose);
   EXPECT_LT(pose->tags, 18);
   EXPECT_GE(pose->tags, 8);
-  EXPECT_LT(position_error_mm(pose->camera_from_stage, pose_), 0.1);
-  EXPECT_LT(angle_error_deg(pose->camera_from_stage, pose_), 0.015);
+  EXPECT_LT(position_error_mm(pose->camera_from_board, pose_), 0.1);
+  EXPECT_LT(angle_error_deg(pose->camera_from_board, pose_), 0.015);
 }
 
 TEST_F(TrackedStage, UsesTagsThatThePictureCuts) {
-  const Eigen::Isometry3d close = look_at_stage(0.2, 1.1, 0.4);
+  const Eigen::Isometry3d close = look_at_board(0.2, 1.1, 0.4);
   const auto pose =
       tracker_.track(grey_picture(stage(), camera_, close, noisy()), disturbed(close, 0.5, 0.002));
   ASSERT_TRUE(pose);
@@ -152,21 +152,21 @@ TEST_F(TrackedStage, UsesTagsThatThePictureCuts) {
   for (const MeasuredCorner& corner : tracker_.corners()) ++corners[corner.tag_id];
   EXPECT_TRUE(
       std::any_of(corners.begin(), corners.end(), [](const auto& tag) { return tag.second < 4; }));
-  EXPECT_LT(position_error_mm(pose->camera_from_stage, close), 0.1);
-  EXPECT_LT(angle_error_deg(pose->camera_from_stage, close), 0.02);
+  EXPECT_LT(position_error_mm(pose->camera_from_board, close), 0.1);
+  EXPECT_LT(angle_error_deg(pose->camera_from_board, close), 0.02);
 }
 
 // Tag 12 has been pasted over with tag 99, 3 mm beside its place: its outline would pull the pose.
 TEST_F(TrackedStage, RefusesAPastedTagByItsCode) {
   Board pasted = stage();
   pasted.tags[99] = pasted.tags.at(12);
-  pasted.tags[99].stage_from_tag.translation().x() += 0.003;
+  pasted.tags[99].board_from_tag.translation().x() += 0.003;
   pasted.tags.erase(12);
   const auto pose = tracker_.track(grey_picture(pasted, camera_, pose_, noisy()), pose_);
   ASSERT_TRUE(pose);
   EXPECT_EQ(pose->tags, 19);
   EXPECT_FALSE(ids_of(tracker_.corners()).contains(12));
-  EXPECT_LT(position_error_mm(pose->camera_from_stage, pose_), 0.1);
+  EXPECT_LT(position_error_mm(pose->camera_from_board, pose_), 0.1);
 }
 
 // A Gaussian blur of 2 px rises over 2.563 sqrt(4 + 1/12 + 1/6) = 5.3 px (pixel and read-out
@@ -174,7 +174,7 @@ TEST_F(TrackedStage, RefusesAPastedTagByItsCode) {
 TEST(TagTracker, MeasuresBlur) {
   const Board board = make_grid_board("tag36h11", 3, 2, 0.09, 0.115);
   const core::CameraModel camera = make_camera(640, 360, true);
-  const Eigen::Isometry3d truth = look_at_stage(0.5, 1.2, 0.4);
+  const Eigen::Isometry3d truth = look_at_board(0.5, 1.2, 0.4);
   Photograph photograph;
   photograph.blur_sigma_px = 2;
   TagTracker tracker = make_tracker(board, camera);
@@ -193,9 +193,9 @@ TEST_F(TrackedStage, HasNoAnswerWhereTheBoardIsNot) {
   EXPECT_FALSE(tracker_.track(noise, pose_));
   // The board, but half a board's width away from where it is predicted.
   const cv::Mat grey = grey_picture(stage(), camera_, pose_, noisy());
-  EXPECT_FALSE(tracker_.track(grey, look_at_stage(0.45, 1.0, 2.0)));
+  EXPECT_FALSE(tracker_.track(grey, look_at_board(0.45, 1.0, 2.0)));
   // Behind the camera.
-  EXPECT_FALSE(tracker_.track(grey, look_at_stage(-0.45, 1.0, 0.4)));
+  EXPECT_FALSE(tracker_.track(grey, look_at_board(-0.45, 1.0, 0.4)));
 }
 
 TEST_F(TrackedStage, HasNoAnswerForAPictureOfAnotherSize) {
@@ -218,7 +218,7 @@ TEST_P(EveryTrackedFamily, IsFollowed) {
   Board board = make_grid_board(GetParam().family, 3, 2, 0.09, 0.17);
   board.border_bits = GetParam().border_bits;
   const core::CameraModel camera = make_camera(640, 360, true);
-  const Eigen::Isometry3d truth = look_at_stage(0.75, 1.1, 0.1);
+  const Eigen::Isometry3d truth = look_at_board(0.75, 1.1, 0.1);
   const cv::Mat grey = grey_picture(board, camera, truth, {});
   TagTracker tracker = make_tracker(board, camera);
   const auto pose = tracker.track(grey, disturbed(truth, 0.3, 0.002));

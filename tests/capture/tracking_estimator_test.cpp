@@ -22,7 +22,7 @@ class TrackingEstimator : public testing::Test {
 
   /// Frame `index` of a walk of 1.5 degrees a frame, starting at `azimuth`.
   [[nodiscard]] Eigen::Isometry3d pose_at(int index, double azimuth = 0.3) const {
-    return look_at_stage(0.5 - 0.002 * index, 1.0 + 0.01 * std::sin(index),
+    return look_at_board(0.5 - 0.002 * index, 1.0 + 0.01 * std::sin(index),
                          azimuth + 0.026 * index);
   }
 
@@ -34,7 +34,7 @@ class TrackingEstimator : public testing::Test {
     const auto* pose = std::get_if<FramePose>(&result);
     ASSERT_NE(pose, nullptr) << name_of(std::get<PoseRejection>(result));
     EXPECT_LT(
-        (pose->camera_from_stage.inverse().translation() - truth.inverse().translation()).norm(),
+        (pose->camera_from_board.inverse().translation() - truth.inverse().translation()).norm(),
         2e-4);
   }
 
@@ -88,7 +88,7 @@ TEST_F(TrackingEstimator, DependsOnTheFramesAlone) {
     cv::cvtColor(frame.image, frame.grey, cv::COLOR_BGR2GRAY);
     frame.image.release();
     const auto second = std::get<FramePose>(again->estimate(frame));
-    EXPECT_EQ(first.camera_from_stage.matrix(), second.camera_from_stage.matrix());
+    EXPECT_EQ(first.camera_from_board.matrix(), second.camera_from_board.matrix());
     EXPECT_EQ(first.reprojection_px, second.reprojection_px);
   }
 }

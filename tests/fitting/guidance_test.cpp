@@ -244,7 +244,7 @@ class CandidatesRoundASphere : public ::testing::Test {
   std::vector<float> area_;
 };
 
-TEST_F(CandidatesRoundASphere, PlacesKeepTheirDistanceAboveTheStage) {
+TEST_F(CandidatesRoundASphere, PlacesKeepTheirDistanceAboveTheBoard) {
   for (const Eigen::Vector3f& place : views_.places()) {
     EXPECT_NEAR(place.norm(), 5, 1e-4f);
     EXPECT_GT(place.z(), 0.4f);

@@ -19,9 +19,9 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 
 /// A copy of the sample session that a test may change.
-class StageCommands : public testing::Test {
+class BoardCommands : public testing::Test {
  protected:
-  StageCommands() : session_(folder_.path() / "session") {
+  BoardCommands() : session_(folder_.path() / "session") {
     std::filesystem::create_directories(session_);
     for (const char* name :
          {"session.json", "camera.yaml", "board.yaml", "object.ply", "frames.avi"}) {
@@ -40,7 +40,7 @@ class StageCommands : public testing::Test {
   std::filesystem::path session_;
 };
 
-TEST_F(StageCommands, CalibrateFindsTheSampleCamera) {
+TEST_F(BoardCommands, CalibrateFindsTheSampleCamera) {
   const auto camera = folder_.path() / "camera.yaml";
   const auto picture = folder_.path() / "coverage.png";
   const ProgramRun run = run_sheen({"calibrate", session_, "--board", session_ / "board.yaml", "-o",
@@ -62,7 +62,7 @@ TEST_F(StageCommands, CalibrateFindsTheSampleCamera) {
   EXPECT_TRUE(std::filesystem::is_regular_file(picture));
 }
 
-TEST_F(StageCommands, CalibrateRefusesPicturesOfSomethingElse) {
+TEST_F(BoardCommands, CalibrateRefusesPicturesOfSomethingElse) {
   const auto camera = folder_.path() / "camera.yaml";
   write_file(camera, "an earlier camera");
   const auto other = folder_.path() / "other.pdf";
@@ -74,12 +74,12 @@ TEST_F(StageCommands, CalibrateRefusesPicturesOfSomethingElse) {
   expect_refused(run_sheen({"calibrate", session_, "-o", camera}), "board");
 }
 
-TEST_F(StageCommands, SurveyFindsDisplacedTagsAndKeepsTheOldBoard) {
+TEST_F(BoardCommands, SurveyFindsDisplacedTagsAndKeepsTheOldBoard) {
   capture::Board board = capture::read_board(session_ / "board.yaml");
   std::mt19937 random(9);
   std::normal_distribution<double> shift_m(0, 0.0005);
   for (auto& [id, tag] : board.tags) {
-    tag.stage_from_tag.translation() +=
+    tag.board_from_tag.translation() +=
         Eigen::Vector3d(shift_m(random), shift_m(random), shift_m(random));
   }
   capture::write_board(session_ / "board.yaml", board);
@@ -98,7 +98,7 @@ TEST_F(StageCommands, SurveyFindsDisplacedTagsAndKeepsTheOldBoard) {
   EXPECT_TRUE(std::filesystem::is_regular_file(folder_.path() / "board.png"));
 }
 
-TEST_F(StageCommands, SurveyLeavesTheSessionAloneByDefault) {
+TEST_F(BoardCommands, SurveyLeavesTheSessionAloneByDefault) {
   const std::string before = read_file(session_ / "board.yaml");
   const ProgramRun run = run_sheen({"survey", session_, "--quiet", "--end", "40"});
   ASSERT_EQ(run.exit_code, 0) << run.standard_error;
@@ -107,19 +107,19 @@ TEST_F(StageCommands, SurveyLeavesTheSessionAloneByDefault) {
             capture::read_board(session_ / "board.yaml").tags.size());
 }
 
-TEST_F(StageCommands, RegisterFindsTheObjectAndKeepsTheOldPlace) {
+TEST_F(BoardCommands, RegisterFindsTheObjectAndKeepsTheOldPlace) {
   // 10 mm and 5 degrees off; the goal is 1 mm and 0.5 degrees.
-  const Eigen::Isometry3d truth = capture::open_session(session_).stage_from_object;
+  const Eigen::Isometry3d truth = capture::open_session(session_).board_from_object;
   const Eigen::Isometry3d start =
       Eigen::Translation3d(0.006, -0.007, 0.004) *
       Eigen::AngleAxisd(5 * kDegree, Eigen::Vector3d(1, -1, 2).normalized()) * truth;
-  capture::write_stage_from_object(session_ / "session.json", session_ / "session.json", start);
+  capture::write_board_from_object(session_ / "session.json", session_ / "session.json", start);
   const std::string before = read_file(session_ / "session.json");
 
   const ProgramRun run = run_sheen({"register", session_, "--views", "12", "--picture",
                                     folder_.path() / "outline.png", "--json", "--quiet"});
   ASSERT_EQ(run.exit_code, 0) << run.standard_error;
-  const Eigen::Isometry3d found = capture::open_session(session_).stage_from_object;
+  const Eigen::Isometry3d found = capture::open_session(session_).board_from_object;
   EXPECT_LT((found.translation() - truth.translation()).norm(), 1e-3);
   EXPECT_LT(Eigen::AngleAxisd(found.linear() * truth.linear().transpose()).angle(), 0.5 * kDegree);
   EXPECT_LT(run.json()["residual_px"].get<double>(), 0.5);
@@ -127,7 +127,7 @@ TEST_F(StageCommands, RegisterFindsTheObjectAndKeepsTheOldPlace) {
   EXPECT_TRUE(std::filesystem::is_regular_file(folder_.path() / "outline.png"));
 }
 
-TEST_F(StageCommands, WhatWasKeptFirstStays) {
+TEST_F(BoardCommands, WhatWasKeptFirstStays) {
   const auto board = session_ / "board.yaml";
   const std::string first = read_file(board);
   EXPECT_EQ(capture::keep_before(board, "survey"), session_ / "board.before-survey.yaml");
@@ -139,9 +139,9 @@ TEST_F(StageCommands, WhatWasKeptFirstStays) {
   EXPECT_EQ(read_file(session_ / "board.before-survey-2.yaml"), "second");
 }
 
-TEST_F(StageCommands, RegisterRefusesAHopelessStart) {
-  const Eigen::Isometry3d truth = capture::open_session(session_).stage_from_object;
-  capture::write_stage_from_object(session_ / "session.json", session_ / "session.json",
+TEST_F(BoardCommands, RegisterRefusesAHopelessStart) {
+  const Eigen::Isometry3d truth = capture::open_session(session_).board_from_object;
+  capture::write_board_from_object(session_ / "session.json", session_ / "session.json",
                                    Eigen::Translation3d(0, 0, 3) * truth);
   const std::string before = read_file(session_ / "session.json");
   expect_refused(run_sheen({"register", session_, "--views", "6", "--end", "30", "--quiet"}),

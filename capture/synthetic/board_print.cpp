@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "capture/synthetic/stage_print.h"
+#include "capture/synthetic/board_print.h"
 
 #include "capture/board_print/tag_bitmap.h"
 #include "capture/pose/apriltag_family.h"
@@ -19,7 +19,7 @@ constexpr double kPitchOfTag = 58.0 / 42.0;
 
 }  // namespace
 
-StagePrint::StagePrint(double object_radius_m) {
+BoardPrint::BoardPrint(double object_radius_m) {
   // Round the tag to millimetres, as one would print it.
   const double tag_m = std::ceil(object_radius_m * kTagOfRadius * 1000 - 0.5) / 1000;
   const double pitch_m = std::round(tag_m * kPitchOfTag * 1000) / 1000;
@@ -54,20 +54,20 @@ StagePrint::StagePrint(double object_radius_m) {
     }
     Board::Tag tag;
     tag.size_m = tag_m;
-    tag.stage_from_tag.translation() << (column - kCells / 2) * pitch_m,
+    tag.board_from_tag.translation() << (column - kCells / 2) * pitch_m,
         (row - kCells / 2) * pitch_m, 0;
     board_.tags.emplace(id, tag);
   }
 }
 
-float StagePrint::reflectance(float x, float y) const {
+float BoardPrint::reflectance(float x, float y) const {
   if (std::abs(x) < half_width_m_ && std::abs(y) < half_width_m_) return paper(x, y);
   // Slate with a slight grain.
   return kTable * (1 + 0.22f * smooth_noise({x * 60, y * 22, 0.5f}) +
                    0.12f * smooth_noise({x * 210, y * 150, 3.5f}));
 }
 
-float StagePrint::paper(float x, float y) const {
+float BoardPrint::paper(float x, float y) const {
   // Find the cell and the module inside its tag.
   const float column = std::floor(x / pitch_m_ + kCells / 2.0f);
   const float row = std::floor(y / pitch_m_ + kCells / 2.0f);

@@ -9,13 +9,13 @@
 
 namespace sheen::capture::synthetic {
 
-/// The printed stage in the plane z = 0: white paper with tags of the family tag36h11 on the cells
+/// The printed board in the plane z = 0: white paper with tags of the family tag36h11 on the cells
 /// of a square grid, the cells in the middle left free for the object, on a dark table.
-class StagePrint {
+class BoardPrint {
  public:
   /// Room for an object of the given radius around the origin; the tags grow with it (42 mm tags
   /// for the knot).
-  explicit StagePrint(double object_radius_m);
+  explicit BoardPrint(double object_radius_m);
 
   [[nodiscard]] const Board& board() const { return board_; }
 
