@@ -3,10 +3,10 @@
 
 #include "app/interrupt.h"
 #include "capture/calibration/calibrate_camera.h"
-#include "capture/calibration/calibration_pictures.h"
+#include "capture/calibration/calibration_images.h"
 #include "capture/calibration/camera_file.h"
-#include "capture/calibration/camera_pictures.h"
-#include "capture/calibration/coverage_picture.h"
+#include "capture/calibration/camera_images.h"
+#include "capture/calibration/coverage_image.h"
 #include "capture/source/v4l2_camera.h"
 #include "core/diagnostics/error.h"
 #include "core/image/write_image.h"
@@ -26,18 +26,18 @@ struct CalibrateOptions {
   std::filesystem::path source;
   std::filesystem::path output;
   std::filesystem::path board;
-  std::filesystem::path picture;
+  std::filesystem::path image;
   std::string chessboard;
   double square_mm = 25;
   int views = 40;
   double seconds = 40;
 };
 
-/// Views of the target with their pictures, which are needed once more when the lens is known.
+/// Views of the target with their images, which are needed once more when the lens is known.
 struct Candidates {
   std::vector<capture::TargetView> views;
-  std::vector<cv::Mat> pictures;
-  capture::PictureSize size;
+  std::vector<cv::Mat> images;
+  capture::ImageSize size;
   int frames = 0;
 
   /// Keeps every second: the source is longer than needed.
@@ -45,10 +45,10 @@ struct Candidates {
     const std::size_t half = (views.size() + 1) / 2;
     for (std::size_t i = 1; i < half; ++i) {
       views[i] = std::move(views[2 * i]);
-      pictures[i] = pictures[2 * i];
+      images[i] = images[2 * i];
     }
     views.resize(half);
-    pictures.resize(half);
+    images.resize(half);
   }
 };
 
@@ -73,20 +73,20 @@ capture::CalibrationTarget target_of(const CalibrateOptions& options) {
 }
 
 /// A device is watched for a while; anything else is read to its end.
-std::unique_ptr<capture::FrameSource> open_pictures(const CalibrateOptions& options) {
+std::unique_ptr<capture::FrameSource> open_images(const CalibrateOptions& options) {
   if (!options.source.string().starts_with("/dev/")) {
-    return capture::open_calibration_pictures(options.source);
+    return capture::open_calibration_images(options.source);
   }
   capture::V4l2CameraOptions camera;
   camera.device = options.source;
-  return capture::open_camera_pictures(
+  return capture::open_camera_images(
       std::make_unique<capture::V4l2Camera>(capture::kernel_v4l2_system(), camera),
       options.seconds);
 }
 
 Candidates find_candidates(const CalibrateOptions& options, capture::TargetFinder& finder,
                            const CommandContext& context) {
-  const auto frames = open_pictures(options);
+  const auto frames = open_images(options);
   Progress progress = context.progress("looking for the target", frames->frame_count().value_or(0));
   Candidates candidates;
   int stride = 1;
@@ -101,7 +101,7 @@ Candidates find_candidates(const CalibrateOptions& options, capture::TargetFinde
     if (!view) continue;
     view->frame_index = frame->index;
     candidates.views.push_back(std::move(*view));
-    candidates.pictures.push_back(grey);
+    candidates.images.push_back(grey);
     if (candidates.views.size() < kMostCandidates) continue;
     candidates.thin_out();
     stride *= 2;
@@ -120,7 +120,7 @@ std::optional<capture::Calibration> calibrate(const CalibrateOptions& options,
   for (capture::TargetView& view : views) {
     for (std::size_t i = 0; i < candidates.views.size(); ++i) {
       if (candidates.views[i].frame_index != view.frame_index) continue;
-      finder.refine(candidates.pictures[i], first->camera, view);
+      finder.refine(candidates.images[i], first->camera, view);
     }
   }
   return capture::calibrate_camera(views, candidates.size);
@@ -134,7 +134,7 @@ std::string describe(const capture::Calibration& found) {
       "principal  {:.2f} {:.2f} px  (+- {:.2f} {:.2f})\n"
       "distortion k1 {:.5f}  k2 {:.5f}  p1 {:.5f}  p2 {:.5f}  k3 {:.5f}\n"
       "error      {:.3f} px RMS over {} views\n"
-      "coverage   {:.0f} % of the picture area; tilts differ by up to {:.0f} degrees\n\n"
+      "coverage   {:.0f} % of the image area; tilts differ by up to {:.0f} degrees\n\n"
       " frame  points  error px\n",
       lens.focal_px.x(), lens.focal_px.y(), found.focal_sigma_px.x(), found.focal_sigma_px.y(),
       lens.principal_px.x(), lens.principal_px.y(), found.principal_sigma_px.x(),
@@ -174,20 +174,20 @@ nlohmann::ordered_json to_json(const capture::Calibration& found, int frames) {
 
 [[noreturn]] void refuse(const CalibrateOptions& options, const std::string& faults) {
   throw core::bad_input(options.source, "cannot be calibrated from: " + faults,
-                        "move the target through the whole picture, near and far, tilted to all "
+                        "move the target through the whole image, near and far, tilted to all "
                         "sides by 30 degrees");
 }
 
 void run_calibrate(const CalibrateOptions& options, const CommandContext& context) {
-  context.check_outputs({options.output, options.picture});
+  context.check_outputs({options.output, options.image});
   const auto finder = capture::make_target_finder(target_of(options));
   const Candidates candidates = find_candidates(options, *finder, context);
   const auto found = calibrate(options, *finder, candidates);
   if (!found) {
-    refuse(options, fmt::format("{} of {} pictures show the target", candidates.views.size(),
+    refuse(options, fmt::format("{} of {} images show the target", candidates.views.size(),
                                 candidates.frames));
   }
-  if (!options.picture.empty()) core::write_image(options.picture, capture::draw_coverage(*found));
+  if (!options.image.empty()) core::write_image(options.image, capture::draw_coverage(*found));
   if (const auto faults = capture::find_faults(*found, {}); !faults.empty()) {
     refuse(options, fmt::format("{}", fmt::join(faults, "; ")));
   }
@@ -197,7 +197,7 @@ void run_calibrate(const CalibrateOptions& options, const CommandContext& contex
 }
 
 void add_target_options(CLI::App& command, CalibrateOptions& options) {
-  auto* target = command.add_option_group("target", "What the pictures show");
+  auto* target = command.add_option_group("target", "What the images show");
   target->add_option("--board", options.board, "A board of tags, such as sheen board prints")
       ->type_name("FILE.yaml");
   target
@@ -220,7 +220,7 @@ void add_target_options(CLI::App& command, CalibrateOptions& options) {
 void add_calibrate_command(CLI::App& program, CommandContext& context) {
   auto options = std::make_shared<CalibrateOptions>();
   CLI::App* command = program.add_subcommand(
-      "calibrate", "Measure a camera's lens from pictures of a printed board or chessboard");
+      "calibrate", "Measure a camera's lens from images of a printed board or chessboard");
   command->footer(
       "Examples:\n"
       "  sheen board -o grid.pdf --full --tag-mm 25\n"
@@ -228,19 +228,19 @@ void add_calibrate_command(CLI::App& program, CommandContext& context) {
       "  sheen calibrate /dev/video0 --board grid.yaml -o camera.yaml    for 40 s, from the "
       "camera\n"
       "  sheen calibrate photos/ --chessboard 9x6 --square-mm 25 -o camera.yaml\n"
-      "Lock focus and zoom first. Move the target through the whole picture, its corners too,\n"
+      "Lock focus and zoom first. Move the target through the whole image, its corners too,\n"
       "near and far, tilted to all sides by 30 degrees and more.");
   command
       ->add_option(
           "source", options->source,
-          "Video, folder of pictures, session folder (its recording is taken), or a camera's "
+          "Video, folder of images, session folder (its recording is taken), or a camera's "
           "device such as /dev/video0")
       ->required();
   command->add_option("-o,--output", options->output, "Camera file to write")
       ->required()
       ->type_name("camera.yaml");
   add_target_options(*command, *options);
-  command->add_option("--views", options->views, "Pictures to calibrate from, chosen for spread")
+  command->add_option("--views", options->views, "Images to calibrate from, chosen for spread")
       ->check(CLI::Range(3, 100).description(""))
       ->type_name("N")
       ->capture_default_str();
@@ -249,7 +249,7 @@ void add_calibrate_command(CLI::App& program, CommandContext& context) {
       ->type_name("S")
       ->capture_default_str();
   command
-      ->add_option("--picture", options->picture,
+      ->add_option("--picture", options->image,
                    "Also draw where points were seen and by how much they miss")
       ->type_name("FILE.png");
   add_common_options(*command, context);

@@ -5,7 +5,7 @@
 
 namespace sheen::app {
 
-/// `sheen calibrate SOURCE -o camera.yaml`: intrinsics and distortion from pictures of a target.
+/// `sheen calibrate SOURCE -o camera.yaml`: intrinsics and distortion from images of a target.
 void add_calibrate_command(CLI::App& program, CommandContext& context);
 
 }  // namespace sheen::app

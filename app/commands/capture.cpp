@@ -23,7 +23,7 @@ std::string size_text(int width_px, int height_px) {
   return fmt::format("{}x{}", width_px, height_px);
 }
 
-/// Raw pictures share chroma between pairs of pixels, NV12 between pairs of rows too.
+/// Raw images share chroma between pairs of pixels, NV12 between pairs of rows too.
 bool can_be_recorded(const capture::CameraDescription& camera) {
   switch (camera.format) {
     case capture::PixelFormat::mjpeg:
@@ -39,7 +39,7 @@ bool can_be_recorded(const capture::CameraDescription& camera) {
 void check_size(const capture::CameraDescription& camera, const core::CameraModel& model) {
   if (!can_be_recorded(camera)) {
     throw core::bad_input(camera.device,
-                          fmt::format("delivers raw pictures of odd size, {}",
+                          fmt::format("delivers raw images of odd size, {}",
                                       size_text(camera.width_px, camera.height_px)),
                           "choose an even --size or --format mjpeg");
   }
@@ -85,8 +85,8 @@ nlohmann::ordered_json to_json(const CaptureOptions& options,
 }
 
 std::string to_text(const CaptureOptions& options, const capture::RecordingStatus& status) {
-  std::string text = fmt::format("recorded {} of {} pictures from {}", status.recorded,
-                                 status.taken, status.description.name);
+  std::string text = fmt::format("recorded {} of {} images from {}", status.recorded, status.taken,
+                                 status.description.name);
   const std::pair<int, const char*> troubles[] = {
       {status.camera.lost, "lost by the camera"},
       {status.camera.damaged + status.unreadable, "damaged"},
@@ -105,7 +105,7 @@ void run_capture(const CaptureOptions& options, const CommandContext& context) {
   watched.fit.preview = !options.headless;
   capture::V4l2CameraOptions wish = options.camera;
   const core::CameraModel model = read_setup(options).camera;
-  if (!wish.mode.size) wish.mode.size = capture::PictureSize{model.width_px(), model.height_px()};
+  if (!wish.mode.size) wish.mode.size = capture::ImageSize{model.width_px(), model.height_px()};
   capture_session(std::make_unique<capture::V4l2Camera>(capture::kernel_v4l2_system(), wish),
                   watched, context);
 }

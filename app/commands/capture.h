@@ -12,7 +12,7 @@ namespace sheen::app {
 /// `sheen capture DEVICE -o SESSION`: records a session and fits it meanwhile.
 void add_capture_command(CLI::App& program, CommandContext& context);
 
-/// Records `camera` as the options say and fits every recorded picture; those that the fit had no
+/// Records `camera` as the options say and fits every recorded image; those that the fit had no
 /// time for follow at the end, so that the model is that of a replay of the recording. Publishes
 /// what came of it. A camera or a disk that fails ends the recording, not the fit. Throws
 /// core::Error.

@@ -35,9 +35,9 @@ void add_camera_options(CLI::App& command, CaptureOptions& options) {
                                     ? std::nullopt
                                     : parse_int(std::string_view(text).substr(x + 1));
             if (!width || !height) throw CLI::ValidationError("--size", "write it like 1280x720");
-            options.camera.mode.size = capture::PictureSize{*width, *height};
+            options.camera.mode.size = capture::ImageSize{*width, *height};
           },
-          "Picture size (default: that of the camera file)")
+          "Image size (default: that of the camera file)")
       ->type_name("WxH");
   command
       .add_option("--fps", options.camera.mode.fps, "Frame rate (default: the camera's largest)")
@@ -46,7 +46,7 @@ void add_camera_options(CLI::App& command, CaptureOptions& options) {
       {"mjpeg", PixelFormat::mjpeg}, {"yuyv", PixelFormat::yuyv}, {"nv12", PixelFormat::nv12}};
   command
       .add_option("--format", options.camera.mode.format,
-                  "How the camera packs pictures (default: the fastest)")
+                  "How the camera packs images (default: the fastest)")
       ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case).description(""))
       ->type_name("mjpeg|yuyv|nv12");
   command
@@ -104,7 +104,7 @@ void add_capture_options(CLI::App& command, CaptureOptions& options) {
                   "Where the object stands: 16 numbers row by row (default: as in --like, else the "
                   "board's own frame)")
       ->expected(16);
-  command.add_option("--frames", options.frames, "Record so many pictures (default: until Ctrl-C)")
+  command.add_option("--frames", options.frames, "Record so many images (default: until Ctrl-C)")
       ->check(CLI::PositiveNumber);
   command.add_option("--seconds", options.seconds, "Record so long")->check(CLI::PositiveNumber);
   command.add_flag("--headless", options.headless, "Without a window");

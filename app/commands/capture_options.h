@@ -21,7 +21,7 @@ struct CaptureOptions {
   std::filesystem::path like;     ///< session whose camera, board and object are taken over
   std::filesystem::path camera_file, board, mesh;  ///< each replaces what `like` has; may be empty
   std::vector<double> board_from_object;           ///< 16 numbers by rows, or none
-  std::optional<int> frames;                       ///< record no more pictures
+  std::optional<int> frames;                       ///< record no more images
   std::optional<double> seconds;                   ///< record no longer
   bool headless = false;                           ///< without a window
   bool list = false;                               ///< only list the cameras

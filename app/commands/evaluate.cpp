@@ -82,7 +82,7 @@ void run_evaluate(const EvaluateOptions& options, const CommandContext& context)
   }
 
   // Report.
-  if (!options.sheet.empty()) core::write_image(options.sheet, sheet.picture());
+  if (!options.sheet.empty()) core::write_image(options.sheet, sheet.image());
   nlohmann::ordered_json document = to_json(summaries.front());
   if (summaries.size() > 1) document["beside"] = to_json(summaries[1]);
   context.publish(document, to_text(names, summaries));
@@ -93,7 +93,7 @@ void run_evaluate(const EvaluateOptions& options, const CommandContext& context)
 void add_evaluate_command(CLI::App& program, CommandContext& context) {
   auto options = std::make_shared<EvaluateOptions>();
   CLI::App* command = program.add_subcommand(
-      "evaluate", "Draw every posed view of a session and compare with its pictures");
+      "evaluate", "Draw every posed view of a session and compare with its images");
   command->footer(
       "Errors are of 8-bit sRGB over the pixels where the mesh is seen, eroded by two.\n"
       "Example:\n  sheen evaluate model.glb sample_data/glossy/held_out --contact-sheet sheet.png");
@@ -103,7 +103,7 @@ void add_evaluate_command(CLI::App& program, CommandContext& context) {
       ->type_name("MODEL.glb");
   command
       ->add_option("--contact-sheet", options->sheet,
-                   "Picture of photographs, renderings and differences side by side")
+                   "Image of photographs, renderings and differences side by side")
       ->type_name("FILE.png");
   command
       ->add_option("--hold-out", options->session.hold_out,

@@ -5,7 +5,7 @@
 
 namespace sheen::app {
 
-/// `sheen evaluate MODEL.glb SESSION`: renders every posed view and compares with its picture.
+/// `sheen evaluate MODEL.glb SESSION`: renders every posed view and compares with its image.
 void add_evaluate_command(CLI::App& program, CommandContext& context);
 
 }  // namespace sheen::app

@@ -5,7 +5,7 @@
 #include "app/interrupt.h"
 #include "capture/registration/placement.h"
 #include "capture/registration/registration.h"
-#include "capture/registration/registration_picture.h"
+#include "capture/registration/registration_image.h"
 #include "capture/registration/view_choice.h"
 #include "capture/session/session_edit.h"
 #include "core/diagnostics/error.h"
@@ -19,7 +19,7 @@
 namespace sheen::app {
 namespace {
 
-constexpr std::size_t kPictureViews = 6;
+constexpr std::size_t kImageViews = 6;
 constexpr std::size_t kTrialViews = 10;
 constexpr int kTurns = 12;              // first guesses of an upright object about z
 constexpr double kTrialSearch = 0.35;   // of the radius: half-way to the next guess, and more
@@ -29,13 +29,13 @@ struct RegisterOptions {
   SessionOptions session;
   std::filesystem::path output;
   std::filesystem::path pairs;
-  std::filesystem::path picture;
+  std::filesystem::path image;
   std::string guess = "session";
   double search_mm = 20;
   int views = 40;
 };
 
-/// The chosen pictures with their cameras, and which frames they are.
+/// The chosen images with their cameras, and which frames they are.
 struct Views {
   std::vector<capture::RegistrationView> views;
   std::vector<int> frame_indices;
@@ -112,7 +112,7 @@ std::string describe(const capture::Registration& found) {
   constexpr double degrees = 180 / std::numbers::pi;
   return fmt::format(
       "residual    {:.2f} px (median), {:.0f} % of the outline on an edge, {} views\n"
-      "moved       {:.2f} mm and {:.2f} degrees ({:.1f} px in the pictures)\n"
+      "moved       {:.2f} mm and {:.2f} degrees ({:.1f} px in the images)\n"
       "uncertainty {:.3f} mm and {:.3f} degrees (standard deviation, worst direction)\n",
       found.residual_px, 100 * found.matched_share, found.views, 1e3 * found.translation_m,
       degrees * found.rotation_rad, found.motion_px, 1e3 * found.sigma_m,
@@ -135,18 +135,18 @@ nlohmann::ordered_json to_json(const capture::Registration& found) {
           {"sigma", {{"mm", 1e3 * found.sigma_m}, {"degrees", degrees * found.sigma_rad}}}};
 }
 
-void write_picture(const RegisterOptions& options, const capture::Session& session,
-                   const core::Mesh& mesh, const Views& views, const Eigen::Isometry3d& before,
-                   const capture::Registration& found) {
+void write_image(const RegisterOptions& options, const capture::Session& session,
+                 const core::Mesh& mesh, const Views& views, const Eigen::Isometry3d& before,
+                 const capture::Registration& found) {
   std::vector<std::string> labels;
   for (std::size_t v = 0; v < views.views.size(); ++v) {
     labels.push_back(
         fmt::format("frame {}{}", views.frame_indices[v], found.agrees[v] ? "" : ", set aside"));
   }
   core::write_image(
-      options.picture,
-      capture::draw_registration(mesh, session.camera, thin_out(views.views, kPictureViews),
-                                 thin_out(labels, kPictureViews), before, found.board_from_object));
+      options.image,
+      capture::draw_registration(mesh, session.camera, thin_out(views.views, kImageViews),
+                                 thin_out(labels, kImageViews), before, found.board_from_object));
 }
 
 /// Where the search begins: picked pairs, upright on the board, or what the session says.
@@ -178,7 +178,7 @@ std::string save(const std::filesystem::path& session_file, const std::filesyste
 void run_register(const RegisterOptions& options, const CommandContext& context) {
   const auto session_file = options.session.folder / "session.json";
   const auto output = options.output.empty() ? session_file : options.output;
-  context.check_outputs({output, options.picture});
+  context.check_outputs({output, options.image});
   const capture::Session session = capture::open_session(options.session.folder);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
   const core::Mesh mesh = read_object_mesh(session.mesh);
@@ -196,7 +196,7 @@ void run_register(const RegisterOptions& options, const CommandContext& context)
   }
 
   // Save.
-  if (!options.picture.empty()) write_picture(options, session, mesh, views, guess, *found);
+  if (!options.image.empty()) write_image(options, session, mesh, views, guess, *found);
   const std::string lines = save(session_file, output, found->board_from_object);
   if (found->matched_share < kTrustedShare) {
     context.note(
@@ -228,7 +228,7 @@ void add_register_options(CLI::App& command, RegisterOptions& options) {
       ->type_name("N")
       ->capture_default_str();
   command
-      .add_option("--picture", options.picture,
+      .add_option("--picture", options.image,
                   "Also draw the outline over six frames, before and after")
       ->type_name("FILE.png");
 }
@@ -238,8 +238,7 @@ void add_register_options(CLI::App& command, RegisterOptions& options) {
 void add_register_command(CLI::App& program, CommandContext& context) {
   auto options = std::make_shared<RegisterOptions>();
   CLI::App* command = program.add_subcommand(
-      "register",
-      "Find where the mesh stands on the board: lay its outline on the pictures' edges");
+      "register", "Find where the mesh stands on the board: lay its outline on the images' edges");
   command->footer(
       "Examples:\n"
       "  sheen register SESSION --picture check.png      improve session.json's T_stage_object\n"

@@ -5,7 +5,7 @@
 
 namespace sheen::app {
 
-/// `sheen register SESSION`: where the mesh stands on the board, from the pictures.
+/// `sheen register SESSION`: where the mesh stands on the board, from the images.
 void add_register_command(CLI::App& program, CommandContext& context);
 
 }  // namespace sheen::app

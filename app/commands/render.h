@@ -5,7 +5,7 @@
 
 namespace sheen::app {
 
-/// `sheen render MODEL.glb --views SESSION -o DIR`: pictures from every view of a session.
+/// `sheen render MODEL.glb --views SESSION -o DIR`: images from every view of a session.
 void add_render_command(CLI::App& program, CommandContext& context);
 
 }  // namespace sheen::app

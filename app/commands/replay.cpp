@@ -128,7 +128,7 @@ std::optional<capture::BoardRefinement> refine_board(const capture::Session& ses
   return refinement;
 }
 
-/// The session's mesh, refined to the pictures' resolution when patches are texels.
+/// The session's mesh, refined to the images' resolution when patches are texels.
 core::Mesh read_patch_mesh(const capture::Session& session, const ReplayOptions& options,
                            const capture::Board* board) {
   core::Mesh mesh = read_object_mesh(session.mesh);

@@ -135,7 +135,7 @@ void add_replay_options(CLI::App& command, ReplayOptions& options) {
   add_model_options(command, options);
   command
       .add_option("--patches", options.patches,
-                  "vertex: one patch per vertex; texel: as fine as the pictures resolve")
+                  "vertex: one patch per vertex; texel: as fine as the images resolve")
       ->check(CLI::IsMember({"vertex", "texel"}))
       ->capture_default_str();
   command

@@ -26,7 +26,7 @@ struct ReplayOptions {
   std::filesystem::path poses_output;  ///< estimated poses, TUM form; empty: not written
   std::string representation;          ///< name in the registry, or "iwls" for what `fitter` says
   std::string fitter = "sparse";       ///< sparse, or one of the paper's constructions
-  std::string patches = "vertex";      ///< or "texel": as fine as the pictures resolve
+  std::string patches = "vertex";      ///< or "texel": as fine as the images resolve
   double texel_px = 1.5;               ///< longest edge between texel patches, pixels, > 0
   fitting::iwls::Options iwls;         ///< for every fitter but sparse
   fitting::sparse::Options sparse;     ///< for the sparse fitter

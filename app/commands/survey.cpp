@@ -22,7 +22,7 @@ struct SurveyOptions {
   std::filesystem::path session;
   std::filesystem::path output;
   std::filesystem::path camera_output;
-  std::filesystem::path picture;
+  std::filesystem::path image;
   int start = 0;
   std::optional<int> end;
 };
@@ -109,7 +109,7 @@ std::string write_keeping(const std::filesystem::path& path, const Write& write)
 
 void run_survey(SurveyOptions options, const CommandContext& context) {
   if (options.output.empty()) options.output = options.session / "board.surveyed.yaml";
-  context.check_outputs({options.output, options.camera_output, options.picture});
+  context.check_outputs({options.output, options.camera_output, options.image});
   const capture::Session session = capture::open_session(options.session);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
   const auto lens =
@@ -121,7 +121,7 @@ void run_survey(SurveyOptions options, const CommandContext& context) {
         session, options.start, options.end, [&](int read) { progress.show(read); }, lens);
   }
   if (!found) {
-    throw core::bad_input(options.session, "its pictures do not tell where the tags lie",
+    throw core::bad_input(options.session, "its images do not tell where the tags lie",
                           "record at least three views with two or more tags each");
   }
 
@@ -133,8 +133,8 @@ void run_survey(SurveyOptions options, const CommandContext& context) {
     written += write_keeping(options.camera_output,
                              [&] { capture::write_camera(options.camera_output, found->camera); });
   }
-  if (!options.picture.empty()) {
-    core::write_image(options.picture, capture::draw_board_change(given, found->board));
+  if (!options.image.empty()) {
+    core::write_image(options.image, capture::draw_board_change(given, found->board));
   }
   if (found->median_shift_m > kImplausibleShift_m) {
     context.note("note: tags lie far from where the board says; check its sizes with a ruler");
@@ -165,8 +165,7 @@ void add_survey_command(CLI::App& program, CommandContext& context) {
                    "Refine the lens, too, and write it here; wants views from many tilts")
       ->type_name("FILE.yaml");
   command
-      ->add_option("--picture", options->picture,
-                   "Also draw the board from above, before and after")
+      ->add_option("--picture", options->image, "Also draw the board from above, before and after")
       ->type_name("FILE.png");
   command->add_option("--start", options->start, "First frame")
       ->check(CLI::NonNegativeNumber)

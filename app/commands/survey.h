@@ -5,7 +5,7 @@
 
 namespace sheen::app {
 
-/// `sheen survey SESSION -o board.yaml`: where the tags really lie, from the pictures.
+/// `sheen survey SESSION -o board.yaml`: where the tags really lie, from the images.
 void add_survey_command(CLI::App& program, CommandContext& context);
 
 }  // namespace sheen::app

@@ -71,10 +71,10 @@ void run_synth(SynthOptions& options, const CommandContext& context) {
                   size_text(session), session.held_out, options.folder.string()));
 }
 
-void add_picture_options(CLI::App& command, SynthOptions& options) {
+void add_image_options(CLI::App& command, SynthOptions& options) {
   synthetic::SyntheticOptions& session = options.session;
   options.size = size_text(session);
-  command.add_option("--size", options.size, "Picture size in pixels")
+  command.add_option("--size", options.size, "Image size in pixels")
       ->check([&session](const std::string& text) { return parse_size(text, session); })
       ->type_name("WxH")
       ->capture_default_str();
@@ -132,7 +132,7 @@ void add_synth_command(CLI::App& program, CommandContext& context) {
                    "Put this mesh on the board instead (metres, z up; PLY, OBJ or GLB)")
       ->excludes(mesh_vertices)
       ->type_name("FILE");
-  add_picture_options(*command, *options);
+  add_image_options(*command, *options);
   command->add_option("--seed", session.seed, "Seed of path, tremor and noise")
       ->type_name("N")
       ->capture_default_str();

@@ -11,7 +11,7 @@
 namespace sheen::app {
 namespace {
 
-/// Counts the CPU time of every picture a renderer draws.
+/// Counts the CPU time of every image a renderer draws.
 class TimedRenderer final : public render::SurfaceRenderer {
  public:
   explicit TimedRenderer(std::unique_ptr<render::SurfaceRenderer> inner)

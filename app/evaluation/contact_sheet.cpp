@@ -18,7 +18,7 @@ constexpr double kDifferenceGain = 4;
 const cv::Scalar kPaper(250, 250, 250);
 const cv::Scalar kInk(60, 55, 50);
 
-/// The object's place in the picture with some air, in the cell's proportions.
+/// The object's place in the image with some air, in the cell's proportions.
 cv::Rect crop_around(const cv::Mat& mask) {
   cv::Rect box = cv::boundingRect(mask);
   const cv::Point2d centre(box.x + box.width / 2.0, box.y + box.height / 2.0);
@@ -33,30 +33,30 @@ cv::Rect crop_around(const cv::Mat& mask) {
          cv::Rect(0, 0, mask.cols, mask.rows);
 }
 
-cv::Mat cell(const cv::Mat& picture, const cv::Rect& crop) {
+cv::Mat cell(const cv::Mat& image, const cv::Rect& crop) {
   cv::Mat scaled;
   const int interpolation = crop.width > kCellWidth ? cv::INTER_AREA : cv::INTER_LANCZOS4;
-  cv::resize(picture(crop), scaled, {kCellWidth, kCellHeight}, 0, 0, interpolation);
+  cv::resize(image(crop), scaled, {kCellWidth, kCellHeight}, 0, 0, interpolation);
   return scaled;
 }
 
-/// Light where the picture is right, dark where it is wrong.
+/// Light where the image is right, dark where it is wrong.
 cv::Mat difference(const render::RenderedView& view, const cv::Mat& photograph) {
   cv::Mat brightened;
   cv::absdiff(view.image, photograph, brightened);
   cv::cvtColor(brightened, brightened, cv::COLOR_BGR2GRAY);
   brightened.convertTo(brightened, -1, -kDifferenceGain, 255);
   cv::cvtColor(brightened, brightened, cv::COLOR_GRAY2BGR);
-  cv::Mat picture(photograph.size(), CV_8UC3, kPaper);
-  brightened.copyTo(picture, view.mask);
-  return picture;
+  cv::Mat image(photograph.size(), CV_8UC3, kPaper);
+  brightened.copyTo(image, view.mask);
+  return image;
 }
 
 /// On white, so that the object is compared and not the missing background.
 cv::Mat on_paper(const render::RenderedView& view) {
-  cv::Mat picture(view.image.size(), CV_8UC3, kPaper);
-  view.image.copyTo(picture, view.mask);
-  return picture;
+  cv::Mat image(view.image.size(), CV_8UC3, kPaper);
+  view.image.copyTo(image, view.mask);
+  return image;
 }
 
 void write(cv::Mat& sheet, const std::string& text, cv::Point place) {
@@ -83,7 +83,7 @@ void ContactSheet::add(const ComparedView& view) {
   captions_.push_back(std::move(captions));
 }
 
-cv::Mat ContactSheet::picture() const {
+cv::Mat ContactSheet::image() const {
   if (columns_.empty()) return {};
   const int rows = static_cast<int>(columns_.front().size());
   const int columns = static_cast<int>(columns_.size());

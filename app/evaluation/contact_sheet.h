@@ -10,7 +10,7 @@
 
 namespace sheen::app {
 
-/// A picture that lets people judge with their eyes: one column per view; the rows are the
+/// An image that lets people judge with their eyes: one column per view; the rows are the
 /// photograph, what each renderer drew, and each one's difference to the photograph, brightened.
 /// Every cell is cropped to the object.
 class ContactSheet {
@@ -21,7 +21,7 @@ class ContactSheet {
   void add(const ComparedView& view);
 
   /// The sheet so far, CV_8UC3; empty when nothing was added.
-  [[nodiscard]] cv::Mat picture() const;
+  [[nodiscard]] cv::Mat image() const;
 
  private:
   std::vector<std::string> names_;

@@ -20,7 +20,7 @@ struct ComparedView {
 };
 
 /// Renders every view (ascending by index) with each renderer and compares with the session's
-/// pictures; views on which the mesh cannot be seen are left out. One summary per renderer.
+/// images; views on which the mesh cannot be seen are left out. One summary per renderer.
 std::vector<EvaluationSummary> evaluate_views(
     const capture::Session& session, const std::vector<PosedFrame>& views,
     std::span<render::SurfaceRenderer* const> renderers,

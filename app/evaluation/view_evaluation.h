@@ -12,7 +12,7 @@
 
 namespace sheen::app {
 
-/// How one rendered view compares with its picture.
+/// How one rendered view compares with its image.
 struct ViewError {
   int index = 0;
   core::ImageError error;

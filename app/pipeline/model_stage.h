@@ -17,7 +17,7 @@
 
 namespace sheen::app {
 
-/// Second stage: posed picture -> visibility -> samples -> fit. The only place that counts frames.
+/// Second stage: posed image -> visibility -> samples -> fit. The only place that counts frames.
 class ModelStage {
  public:
   /// The doors between the rooms; mesh and light fields are borrowed.

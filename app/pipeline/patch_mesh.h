@@ -13,7 +13,7 @@ namespace sheen::app {
 std::optional<double> pixel_footprint_m(const capture::Session& session, const core::Mesh& mesh,
                                         capture::PoseEstimator& poses);
 
-/// A mesh whose vertices stand as close as the pictures resolve: no edge longer than `spacing_px`
+/// A mesh whose vertices stand as close as the images resolve: no edge longer than `spacing_px`
 /// pixels.
 core::Mesh texel_mesh(const core::Mesh& mesh, double pixel_footprint_m, double spacing_px);
 

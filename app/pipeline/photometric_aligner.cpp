@@ -40,16 +40,16 @@ void PhotometricAligner::note_absorbed(const core::SampleBatch& batch) {
 }
 
 std::optional<core::Alignment> PhotometricAligner::align(
-    const cv::Mat& picture, const core::VertexView& view, const fitting::LightField& model,
+    const cv::Mat& image, const core::VertexView& view, const fitting::LightField& model,
     const core::CameraModel& camera, const Eigen::Isometry3d& camera_from_object) {
   const auto region = core::visible_region(view, kRegionMarginPx);
   if (!region) return std::nullopt;
-  picture_.look_at(picture, *region, kSmoothingPx);
-  core::select_points(view, neighbours_, is_usable_, picture_, {}, selected_);
+  image_.look_at(image, *region, kSmoothingPx);
+  core::select_points(view, neighbours_, is_usable_, image_, {}, selected_);
   expect(view, model);
   core::AlignmentLimits limits;
   limits.prior_px = pose_error_px_;
-  return core::align_pose(points_, picture_, camera, camera_from_object, limits);
+  return core::align_pose(points_, image_, camera, camera_from_object, limits);
 }
 
 std::optional<double> PhotometricAligner::gain(const core::SampleBatch& batch,

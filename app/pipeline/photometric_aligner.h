@@ -3,7 +3,7 @@
 
 #include "core/alignment/align_pose.h"
 #include "core/alignment/exposure.h"
-#include "core/alignment/gradient_picture.h"
+#include "core/alignment/gradient_image.h"
 #include "core/alignment/select_points.h"
 #include "core/mesh/mesh.h"
 #include "core/samples/sample_batch.h"
@@ -21,23 +21,23 @@ namespace sheen::app {
 /// What is adjusted per frame to agree with the model that is being built.
 struct PhotometricOptions {
   bool refine_poses = false;
-  double pose_error_px = 0.3;  ///< expected of the poses to be refined, in the picture, > 0
+  double pose_error_px = 0.3;  ///< expected of the poses to be refined, in the image, > 0
   bool exposure = false;
 };
 
-/// Compares pictures with a light field: refines a frame's pose, finds its exposure. Only patches
+/// Compares images with a light field: refines a frame's pose, finds its exposure. Only patches
 /// that enough frames have seen take part.
 class PhotometricAligner {
  public:
-  /// `pose_error_px` is the error expected of the poses to be refined, in the picture.
+  /// `pose_error_px` is the error expected of the poses to be refined, in the image.
   PhotometricAligner(const core::Mesh& mesh, double pose_error_px);
 
   /// Counts the samples that the model has absorbed.
   void note_absorbed(const core::SampleBatch& batch);
 
-  /// Pose under which `picture` agrees better with `model`; nothing when that cannot be said.
+  /// Pose under which `image` agrees better with `model`; nothing when that cannot be said.
   /// `view` is the mesh seen from the start, occlusion included.
-  [[nodiscard]] std::optional<core::Alignment> align(const cv::Mat& picture,
+  [[nodiscard]] std::optional<core::Alignment> align(const cv::Mat& image,
                                                      const core::VertexView& view,
                                                      const fitting::LightField& model,
                                                      const core::CameraModel& camera,
@@ -55,7 +55,7 @@ class PhotometricAligner {
   core::VertexNeighbours neighbours_;
   std::vector<std::uint16_t> seen_;      ///< samples absorbed per patch
   std::vector<std::uint8_t> is_usable_;  ///< seen often enough to be compared with
-  core::GradientPicture picture_;
+  core::GradientImage image_;
   std::vector<std::uint32_t> selected_;
   core::ExpectedPoints points_;
   std::vector<float> measured_, predicted_;

@@ -10,7 +10,7 @@
 namespace sheen::app {
 namespace {
 
-constexpr std::size_t kQueuedFrames = 3;  // evens out slow frames; each holds a picture
+constexpr std::size_t kQueuedFrames = 3;  // evens out slow frames; each holds an image
 
 /// Poses frames on a thread of its own, a few ahead of whoever takes them.
 class PoseThread {

@@ -10,14 +10,14 @@
 
 namespace sheen::app {
 
-/// A picture and where it was taken from, on its way from stage to stage.
+/// An image and where it was taken from, on its way from stage to stage.
 struct TrackedFrame {
   capture::Frame frame;
   capture::PoseResult pose = capture::PoseRejection::no_tags;
   core::StageTimes times;
 };
 
-/// First stage: picture -> pose.
+/// First stage: image -> pose.
 class PoseStage {
  public:
   PoseStage(std::unique_ptr<capture::FrameSource> frames,

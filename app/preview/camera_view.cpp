@@ -23,9 +23,9 @@ core::CameraModel resized(const core::CameraModel& camera, double scale) {
 
 }  // namespace
 
-void CameraView::take(const cv::Mat& picture, const core::CameraModel& camera,
+void CameraView::take(const cv::Mat& image, const core::CameraModel& camera,
                       const std::optional<Eigen::Isometry3d>& camera_from_object) {
-  picture_.upload(picture);
+  image_.upload(image);
   camera_ = camera;
   camera_from_object_ = camera_from_object;
   is_new_ = true;
@@ -50,7 +50,7 @@ void CameraView::show(const ImVec2& corner, const ImVec2& size, const ViewState&
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(corner, {corner.x + size.x, corner.y + size.y},
                      ImGui::GetColorU32(theme::kBackground));
-  if (picture_.name() == 0) return;
+  if (image_.name() == 0) return;
   const float fit = std::min(size.x / static_cast<float>(camera_.width_px()),
                              size.y / static_cast<float>(camera_.height_px()));
   scale_ = static_cast<double>(fit * ImGui::GetIO().DisplayFramebufferScale.x);
@@ -58,7 +58,7 @@ void CameraView::show(const ImVec2& corner, const ImVec2& size, const ViewState&
                      fit * static_cast<float>(camera_.height_px()));
   const ImVec2 from(corner.x + 0.5f * (size.x - shown.x), corner.y + 0.5f * (size.y - shown.y));
   const Eigen::AlignedBox2f whole(Eigen::Vector2f::Zero(), Eigen::Vector2f::Ones());
-  add_part(list, picture_.name(), from, shown, whole);
+  add_part(list, image_.name(), from, shown, whole);
   if (!is_painted_) return;
   // Radiance covers the object so that the two can be compared; scores let it shine through.
   const float strength = state.layer == Layer::radiance ? 1.0f : 0.75f;

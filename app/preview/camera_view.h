@@ -3,7 +3,7 @@
 
 #include "app/preview/object_painter.h"
 #include "app/preview/view_state.h"
-#include "render/preview/picture_texture.h"
+#include "render/preview/image_texture.h"
 
 #include <Eigen/Geometry>
 #include <imgui.h>
@@ -12,28 +12,28 @@
 
 namespace sheen::app {
 
-/// The camera's picture with the object drawn over it where the pose says it is.
+/// The camera's image with the object drawn over it where the pose says it is.
 class CameraView {
  public:
-  explicit CameraView(const render::gl::Functions& gl) : picture_(gl), target_(gl, true) {}
+  explicit CameraView(const render::gl::Functions& gl) : image_(gl), target_(gl, true) {}
 
-  /// A new picture and where it was taken from; no pose: nothing is drawn over it.
-  void take(const cv::Mat& picture, const core::CameraModel& camera,
+  /// A new image and where it was taken from; no pose: nothing is drawn over it.
+  void take(const cv::Mat& image, const core::CameraModel& camera,
             const std::optional<Eigen::Isometry3d>& camera_from_object);
 
-  /// Draws the object over the picture, unless nothing has changed since it last did.
+  /// Draws the object over the image, unless nothing has changed since it last did.
   void paint(ObjectPainter& painter, const ViewState& state);
-  /// Fills a rectangle of the present ImGui window, the picture as large as fits.
+  /// Fills a rectangle of the present ImGui window, the image as large as fits.
   void show(const ImVec2& corner, const ImVec2& size, const ViewState& state);
 
  private:
-  render::PictureTexture picture_;
+  render::ImageTexture image_;
   render::gl::OffscreenTarget target_;
   core::CameraModel camera_;
-  double scale_ = 0;  ///< pixels of the screen per pixel of the picture; 0: not shown yet
+  double scale_ = 0;  ///< pixels of the screen per pixel of the image; 0: not shown yet
   std::optional<Eigen::Isometry3d> camera_from_object_;
   bool is_painted_ = false;
-  bool is_new_ = false;  ///< picture and pose, since the object was last drawn over them
+  bool is_new_ = false;  ///< image and pose, since the object was last drawn over them
   Layer painted_layer_ = Layer::mesh;
   std::size_t painted_version_ = 0;
   double painted_scale_ = 0;

@@ -15,7 +15,7 @@ constexpr std::array kBindings{
     KeyBinding{GLFW_KEY_3, 0, Command::show_misfit, "3", "Where the model does not fit", true},
     KeyBinding{GLFW_KEY_4, 0, Command::show_mesh, "4", "Mesh", false},
     KeyBinding{GLFW_KEY_TAB, 0, Command::swap_views, "Tab", "Swap camera and model", true},
-    KeyBinding{GLFW_KEY_O, 0, Command::toggle_overlay, "O", "Object over the picture", true},
+    KeyBinding{GLFW_KEY_O, 0, Command::toggle_overlay, "O", "Object over the image", true},
     KeyBinding{GLFW_KEY_P, 0, Command::toggle_path, "P", "Path of the camera", true},
     KeyBinding{GLFW_KEY_F, 0, Command::frame_object, "F", "Frame the object", false},
     KeyBinding{GLFW_KEY_SPACE, 0, Command::pause, "Space", "Pause and go on", true},

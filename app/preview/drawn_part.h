@@ -9,7 +9,7 @@
 
 namespace sheen::app {
 
-/// Part of a camera's picture that something inside `box` (object frame) can appear in, in shares
+/// Part of a camera's image that something inside `box` (object frame) can appear in, in shares
 /// of width and height: all of [0, 1] when the box reaches behind the camera. The rest need not be
 /// put on the screen.
 Eigen::AlignedBox2f drawn_part(const Eigen::AlignedBox3d& box, const core::CameraModel& camera,

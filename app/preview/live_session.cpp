@@ -58,7 +58,7 @@ void LiveSession::publish(const TrackedFrame& tracked, const FrameStatistics& st
   const std::lock_guard lock(mutex_);
   status_.frames_read = statistics.frames_read;
   status_.frames_fitted = static_cast<int>(views_.size()) + (admitted_ ? 1 : 0);
-  tracked.frame.image.copyTo(status_.picture = cv::Mat());
+  tracked.frame.image.copyTo(status_.image = cv::Mat());
   status_.trouble = std::exchange(verdict_, {});
   status_.camera_from_object.reset();
   if (const auto* rejection = std::get_if<capture::PoseRejection>(&tracked.pose)) {

@@ -25,7 +25,7 @@ struct LiveStatus {
   std::string trouble;  ///< why the last frame was refused; empty when it was not
   std::vector<std::pair<std::string, double>> stage_ms;  ///< CPU per frame, median of the last ones
 
-  cv::Mat picture;  ///< last frame, CV_8UC3 BGR; shared, never written to
+  cv::Mat image;  ///< last frame, CV_8UC3 BGR; shared, never written to
   std::optional<Eigen::Isometry3d> camera_from_object;  ///< of that frame
 
   double coverage = 0;                  ///< [0, 1]

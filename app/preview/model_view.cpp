@@ -62,7 +62,7 @@ void ModelView::paint(ObjectPainter& painter, Layer layer, bool hastily) {
 
 void ModelView::show(const ImVec2& corner, const ImVec2& size, const ViewState& state,
                      const CameraTrail& trail, bool is_large) {
-  // The picture is painted as large as it is shown, from the next redraw on.
+  // The image is painted as large as it is shown, from the next redraw on.
   const ImVec2 density = ImGui::GetIO().DisplayFramebufferScale;
   lens_ = OrbitCamera::lens(std::max(1, static_cast<int>(size.x * density.x)),
                             std::max(1, static_cast<int>(size.y * density.y)));

@@ -31,7 +31,7 @@ class ModelView {
   ModelView(const render::gl::Functions& gl, const core::Mesh& mesh, const Eigen::Vector3d& up,
             bool with_cameras);
 
-  /// Draws into the picture that `show` puts on the screen; needs the light field to keep still if
+  /// Draws into the image that `show` puts on the screen; needs the light field to keep still if
   /// the painter says so. What has not changed is drawn once more, finer, and then no more;
   /// `hastily` draws what has changed with a quarter of the pixels.
   void paint(ObjectPainter& painter, Layer layer, bool hastily);
@@ -57,7 +57,7 @@ class ModelView {
   OrbitCamera camera_;
   core::RayCaster caster_;
   render::gl::OffscreenTarget target_;
-  core::CameraModel lens_ = OrbitCamera::lens(640, 360);  ///< of the picture to be painted
+  core::CameraModel lens_ = OrbitCamera::lens(640, 360);  ///< of the image to be painted
   core::CameraModel painted_lens_;
   Eigen::Isometry3d painted_from_ = Eigen::Isometry3d::Identity();
   Layer painted_layer_ = Layer::mesh;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kHalfHeightTangent = 0.3153;  // tan(35 degrees / 2)
 constexpr double kHighest_rad = 1.5607;        // half a degree short of the pole
-constexpr double kFill = 0.86;  // share of the picture that the object's sphere takes
+constexpr double kFill = 0.86;                 // share of the image that the object's sphere takes
 constexpr double kZoomStep = 0.85;
 
 /// Right-handed axes whose third is `up`.
@@ -40,14 +40,14 @@ OrbitCamera::OrbitCamera(const core::Mesh& mesh, const Eigen::Vector3d& up, doub
   frame();
 }
 
-void OrbitCamera::orbit(const Eigen::Vector2d& drag_px, double picture_height_px) {
-  const Eigen::Vector2d turn = drag_px * (std::numbers::pi / picture_height_px);
+void OrbitCamera::orbit(const Eigen::Vector2d& drag_px, double image_height_px) {
+  const Eigen::Vector2d turn = drag_px * (std::numbers::pi / image_height_px);
   azimuth_rad_ = std::remainder(azimuth_rad_ - turn.x(), 2 * std::numbers::pi);
   elevation_rad_ = std::clamp(elevation_rad_ + turn.y(), -kHighest_rad, kHighest_rad);
 }
 
-void OrbitCamera::pan(const Eigen::Vector2d& drag_px, double picture_height_px) {
-  const double metres_per_px = 2 * kHalfHeightTangent * distance_m_ / picture_height_px;
+void OrbitCamera::pan(const Eigen::Vector2d& drag_px, double image_height_px) {
+  const double metres_per_px = 2 * kHalfHeightTangent * distance_m_ / image_height_px;
   const Eigen::Matrix3d object_from_camera = camera_from_object().linear().transpose();
   target_ -= metres_per_px *
              (drag_px.x() * object_from_camera.col(0) + drag_px.y() * object_from_camera.col(1));

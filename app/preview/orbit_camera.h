@@ -16,10 +16,10 @@ class OrbitCamera {
   /// upright axis, not zero.
   OrbitCamera(const core::Mesh& mesh, const Eigen::Vector3d& up, double room = 1);
 
-  /// Dragging by a picture's height turns by 180 degrees; the elevation stops at the poles.
-  void orbit(const Eigen::Vector2d& drag_px, double picture_height_px);
+  /// Dragging by an image's height turns by 180 degrees; the elevation stops at the poles.
+  void orbit(const Eigen::Vector2d& drag_px, double image_height_px);
   /// The point under the cursor in the target's plane stays under it.
-  void pan(const Eigen::Vector2d& drag_px, double picture_height_px);
+  void pan(const Eigen::Vector2d& drag_px, double image_height_px);
   /// Positive steps come nearer, 15 % each; never into the object's innermost thousandth.
   void zoom(double steps);
   /// Back to the whole object, seen from the present side.

@@ -11,14 +11,14 @@
 
 namespace sheen::app {
 
-/// Lines in the object's frame over a picture that a camera without distortion has drawn at
+/// Lines in the object's frame over an image that a camera without distortion has drawn at
 /// `origin` in the window.
 class Overlay {
  public:
   Overlay(ImDrawList& list, const ImVec2& origin, const ImVec2& scale,
           const core::CameraModel& camera, const Eigen::Isometry3d& camera_from_object);
 
-  /// A pyramid from the eye towards the picture, `depth_m` long; its base has the picture's shape.
+  /// A pyramid from the eye towards the image, `depth_m` long; its base has the image's shape.
   void frustum(const core::CameraModel& lens, const Eigen::Isometry3d& lens_from_object,
                double depth_m, ImU32 colour, float thickness) const;
   void path(const std::vector<Eigen::Vector3d>& places, ImU32 colour, float thickness) const;

@@ -59,11 +59,11 @@ bool PreviewWindow::redraw(double longest_wait_s) {
 }
 
 void PreviewWindow::take_news() {
-  // Counters, picture and pose.
+  // Counters, image and pose.
   status_ = subject_.live->status();
-  if (status_.frames_read != shown_frame_ && !status_.picture.empty()) {
+  if (status_.frames_read != shown_frame_ && !status_.image.empty()) {
     shown_frame_ = status_.frames_read;
-    camera_view_.take(status_.picture, subject_.live->camera(), status_.camera_from_object);
+    camera_view_.take(status_.image, subject_.live->camera(), status_.camera_from_object);
   }
   if (status_.camera_from_object) trail_.present = status_.camera_from_object;
   trail_.hint = status_.phase == LiveStatus::Phase::finished ? std::nullopt : status_.hint;
@@ -248,7 +248,7 @@ void PreviewWindow::obey_session(Command command) {
 }
 
 void PreviewWindow::save_snapshot() {
-  picture_ = window_.picture();
+  image_ = window_.image();
   if (subject_.snapshot_folder.empty()) return;
   try {
     // Never over an older one.
@@ -256,7 +256,7 @@ void PreviewWindow::save_snapshot() {
     do {
       file = subject_.snapshot_folder / fmt::format("sheen-{:03}.png", ++snapshots_);
     } while (std::filesystem::exists(file));
-    core::write_image(file, picture_);
+    core::write_image(file, image_);
     note_ = "Snapshot " + file.filename().string();
   } catch (const core::Error& error) {
     note_ = error.what();

@@ -45,7 +45,7 @@ class PreviewWindow {
   [[nodiscard]] const ViewState& state() const { return state_; }
   [[nodiscard]] OrbitCamera& camera() { return model_view_.camera(); }
   /// The window as last drawn, CV_8UC3 BGR.
-  [[nodiscard]] const cv::Mat& picture() const { return picture_; }
+  [[nodiscard]] const cv::Mat& image() const { return image_; }
 
  private:
   void take_news();
@@ -65,7 +65,7 @@ class PreviewWindow {
   CameraView camera_view_;
   ViewState state_;
   LiveStatus status_;
-  int shown_frame_ = -1;  ///< frames_read when the picture was taken over
+  int shown_frame_ = -1;  ///< frames_read when the image was taken over
   CameraTrail trail_;
   std::size_t generation_ = 0;
   std::size_t rewinds_ = 0;
@@ -74,7 +74,7 @@ class PreviewWindow {
   bool snapshot_wanted_ = false;
   int snapshots_ = 0;
   std::string note_;
-  cv::Mat picture_;
+  cv::Mat image_;
   RedrawPace pace_;
 };
 

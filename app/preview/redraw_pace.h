@@ -5,7 +5,7 @@
 
 namespace sheen::app {
 
-/// Whether redraws take more time than a fluent picture has.
+/// Whether redraws take more time than a fluent image has.
 class RedrawPace {
  public:
   using Clock = std::chrono::steady_clock;
@@ -17,7 +17,7 @@ class RedrawPace {
   /// Wall time of a redraw, averaged over the last few.
   [[nodiscard]] double work_ms() const { return 1e3 * recent_s_; }
   /// Recent redraws took so long that 30 a second are in danger. Remains so until they could be
-  /// done with far more to draw, so that the picture does not flicker between two qualities.
+  /// done with far more to draw, so that the image does not flicker between two qualities.
   [[nodiscard]] bool is_slow() const { return is_slow_; }
 
  private:

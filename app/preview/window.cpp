@@ -167,17 +167,17 @@ void Window::wake() {
   glfwPostEmptyEvent();
 }
 
-cv::Mat Window::picture() const {
+cv::Mat Window::image() const {
   int width_px = 0;
   int height_px = 0;
   glfwGetFramebufferSize(impl_->handle.get(), &width_px, &height_px);
-  cv::Mat picture(height_px, width_px, CV_8UC3);
+  cv::Mat image(height_px, width_px, CV_8UC3);
   gl_.BindFramebuffer(GL_FRAMEBUFFER, 0);
   gl_.PixelStorei(GL_PACK_ALIGNMENT, 1);
-  gl_.ReadPixels(0, 0, width_px, height_px, GL_BGR, GL_UNSIGNED_BYTE, picture.data);
+  gl_.ReadPixels(0, 0, width_px, height_px, GL_BGR, GL_UNSIGNED_BYTE, image.data);
   gl_.PixelStorei(GL_PACK_ALIGNMENT, 4);
-  cv::flip(picture, picture, 0);
-  return picture;
+  cv::flip(image, image, 0);
+  return image;
 }
 
 }  // namespace sheen::app

@@ -40,7 +40,7 @@ class Window final : public render::Context {
 
   /// Takes in events, waiting for the first at most this long, and begins a redraw.
   void begin_redraw(double longest_wait_s);
-  /// Draws ImGui's lists; `picture` can be read now.
+  /// Draws ImGui's lists; `image` can be read now.
   void draw();
   /// Shows what was drawn.
   void show();
@@ -54,7 +54,7 @@ class Window final : public render::Context {
   static void wake();
 
   /// What `draw` has drawn and `show` has not yet shown, CV_8UC3 BGR.
-  [[nodiscard]] cv::Mat picture() const;
+  [[nodiscard]] cv::Mat image() const;
 
   [[nodiscard]] const theme::Fonts& fonts() const { return fonts_; }
   [[nodiscard]] float content_scale() const { return content_scale_; }

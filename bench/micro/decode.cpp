@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // From recorded bytes to pixels: our reader against FFmpeg and OpenCV on the same 1280x720
-// recording, the ways to get a grey plane besides, and what packing a raw picture costs.
+// recording, the ways to get a grey plane besides, and what packing a raw image costs.
 #include "capture/session/avi_writer.h"
 #include "capture/source/jpeg_decoder.h"
 #include "capture/source/jpeg_encoder.h"
@@ -22,9 +22,9 @@ namespace {
 using namespace sheen::capture;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr PictureSize kSize{1280, 720};
+constexpr ImageSize kSize{1280, 720};
 constexpr int kFrames = 60;
-constexpr int kQuality = 88;  // gives pictures of the size that cameras deliver
+constexpr int kQuality = 88;  // gives images of the size that cameras deliver
 
 /// The sample recording at a camera's size, 4:2:0.
 class Recording {
@@ -34,16 +34,16 @@ class Recording {
     folder_ = mkdtemp(folder.data());
     cv::VideoCapture sample(SHEEN_SOURCE_DIR "/sample_data/glossy/frames.avi");
     AviWriter writer(path(), kSize, 30);
-    cv::Mat picture;
-    for (int i = 0; i < kFrames && sample.read(picture); ++i) {
-      cv::resize(picture, picture, {kSize.width_px, kSize.height_px}, 0, 0, cv::INTER_CUBIC);
+    cv::Mat image;
+    for (int i = 0; i < kFrames && sample.read(image); ++i) {
+      cv::resize(image, image, {kSize.width_px, kSize.height_px}, 0, 0, cv::INTER_CUBIC);
       cv::randn(noise_, 0, 3);
-      picture += noise_;
-      cv::imencode(".jpg", picture, jpegs_.emplace_back(), {cv::IMWRITE_JPEG_QUALITY, kQuality});
+      image += noise_;
+      cv::imencode(".jpg", image, jpegs_.emplace_back(), {cv::IMWRITE_JPEG_QUALITY, kQuality});
       if (writer.append(jpegs_.back()) != 0) std::abort();
     }
     if (writer.close() != 0) std::abort();
-    last_ = picture;
+    last_ = image;
   }
   ~Recording() { std::filesystem::remove_all(folder_); }
   Recording(const Recording&) = delete;
@@ -53,7 +53,7 @@ class Recording {
 
   [[nodiscard]] std::filesystem::path path() const { return folder_ / "frames.avi"; }
   [[nodiscard]] const Bytes& jpeg(std::size_t i) const { return jpegs_[i % jpegs_.size()]; }
-  [[nodiscard]] const cv::Mat& picture() const { return last_; }
+  [[nodiscard]] const cv::Mat& image() const { return last_; }
   [[nodiscard]] double mean_kilobytes() const {
     double sum = 0;
     for (const Bytes& jpeg : jpegs_) sum += static_cast<double>(jpeg.size());
@@ -92,13 +92,13 @@ void our_reader(benchmark::State& state) {
 
 void ffmpeg_reader(benchmark::State& state) {
   cv::VideoCapture capture(recording().path().string(), cv::CAP_FFMPEG);
-  cv::Mat picture;
+  cv::Mat image;
   for (auto _ : state) {
-    if (!capture.read(picture)) {
+    if (!capture.read(image)) {
       capture.open(recording().path().string(), cv::CAP_FFMPEG);
-      capture.read(picture);
+      capture.read(image);
     }
-    benchmark::DoNotOptimize(picture.data);
+    benchmark::DoNotOptimize(image.data);
   }
   name_size(state);
 }
@@ -106,25 +106,25 @@ void ffmpeg_reader(benchmark::State& state) {
 void opencv_decode(benchmark::State& state) {
   std::size_t i = 0;
   for (auto _ : state) {
-    const cv::Mat picture = cv::imdecode(recording().jpeg(i++), cv::IMREAD_COLOR);
-    benchmark::DoNotOptimize(picture.data);
+    const cv::Mat image = cv::imdecode(recording().jpeg(i++), cv::IMREAD_COLOR);
+    benchmark::DoNotOptimize(image.data);
   }
   name_size(state);
 }
 
 void our_decode(benchmark::State& state) {
   std::size_t i = 0;
-  cv::Mat picture;
-  for (auto _ : state) benchmark::DoNotOptimize(decode_jpeg(recording().jpeg(i++), kSize, picture));
+  cv::Mat image;
+  for (auto _ : state) benchmark::DoNotOptimize(decode_jpeg(recording().jpeg(i++), kSize, image));
   name_size(state);
 }
 
 void our_decode_then_grey(benchmark::State& state) {
   std::size_t i = 0;
-  cv::Mat picture, grey;
+  cv::Mat image, grey;
   for (auto _ : state) {
-    benchmark::DoNotOptimize(decode_jpeg(recording().jpeg(i++), kSize, picture));
-    cv::cvtColor(picture, grey, cv::COLOR_BGR2GRAY);
+    benchmark::DoNotOptimize(decode_jpeg(recording().jpeg(i++), kSize, image));
+    cv::cvtColor(image, grey, cv::COLOR_BGR2GRAY);
   }
   name_size(state);
 }
@@ -132,7 +132,7 @@ void our_decode_then_grey(benchmark::State& state) {
 /// The luma plane comes for free, but chroma is no longer interpolated between its samples.
 void planes_then_colour(benchmark::State& state) {
   const int width = kSize.width_px, height = kSize.height_px;
-  cv::Mat picture(height, width, CV_8UC3);
+  cv::Mat image(height, width, CV_8UC3);
   std::array<Bytes, 3> planes{Bytes(static_cast<std::size_t>(width * height)),
                               Bytes(static_cast<std::size_t>(width * height / 4)),
                               Bytes(static_cast<std::size_t>(width * height / 4))};
@@ -143,17 +143,17 @@ void planes_then_colour(benchmark::State& state) {
   for (auto _ : state) {
     const Bytes& jpeg = recording().jpeg(i++);
     tjDecompressToYUVPlanes(codec, jpeg.data(), jpeg.size(), out.data(), width, nullptr, height, 0);
-    tjDecodeYUVPlanes(codec, in.data(), nullptr, TJSAMP_420, picture.data, width, 0, height,
-                      TJPF_BGR, 0);
+    tjDecodeYUVPlanes(codec, in.data(), nullptr, TJSAMP_420, image.data, width, 0, height, TJPF_BGR,
+                      0);
   }
   tjDestroy(codec);
   name_size(state);
 }
 
-/// A raw picture as a camera delivers it; what its values are does not matter.
+/// A raw image as a camera delivers it; what its values are does not matter.
 void pack_yuyv(benchmark::State& state) {
   cv::Mat yuv;
-  cv::cvtColor(recording().picture(), yuv, cv::COLOR_BGR2YUV);
+  cv::cvtColor(recording().image(), yuv, cv::COLOR_BGR2YUV);
   Bytes raw;
   for (int y = 0; y < yuv.rows; ++y) {
     for (int x = 0; x < yuv.cols; ++x) {

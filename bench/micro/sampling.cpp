@@ -30,11 +30,11 @@ class Views {
   std::size_t view_idx_ = 0;
 };
 
-cv::Mat noisy_picture(const core::CameraModel& camera) {
-  cv::Mat picture(camera.height_px(), camera.width_px(), CV_8UC3);
+cv::Mat noisy_image(const core::CameraModel& camera) {
+  cv::Mat image(camera.height_px(), camera.width_px(), CV_8UC3);
   cv::RNG random(1);
-  random.fill(picture, cv::RNG::UNIFORM, 0, 256);
-  return picture;
+  random.fill(image, cv::RNG::UNIFORM, 0, 256);
+  return image;
 }
 
 void project_one_by_one(benchmark::State& state) {
@@ -66,30 +66,30 @@ void project(benchmark::State& state) {
 void project_and_sample(benchmark::State& state) {
   const Walk& walk = walk_round(static_cast<int>(state.range(0)));
   const core::SurfacePoints points = core::surface_points(walk.mesh);
-  const cv::Mat picture = noisy_picture(walk.camera);
+  const cv::Mat image = noisy_image(walk.camera);
   Views views(walk);
   core::VertexView view;
   core::SampleBatch batch;
   for (auto _ : state) {
     core::project_vertices(points, walk.camera, views.next(), {}, 1, view);
-    core::back_project(picture, view, batch);
+    core::back_project(image, view, batch);
     benchmark::ClobberMemory();
   }
   state.counters["samples"] = static_cast<double>(batch.size());
 }
 
-/// Reading pictures alone, by one instruction set.
-void read_picture(benchmark::State& state, const core::SamplingKernels& kernels) {
+/// Reading images alone, by one instruction set.
+void read_image(benchmark::State& state, const core::SamplingKernels& kernels) {
   const Walk& walk = walk_round(static_cast<int>(state.range(0)));
-  const cv::Mat picture = noisy_picture(walk.camera);
+  const cv::Mat image = noisy_image(walk.camera);
   core::VertexView view;
   core::SampleBatch batch;
   core::project_vertices(core::surface_points(walk.mesh), walk.camera,
                          walk.camera_from_object.front(), {}, 1, view);
-  core::back_project(picture, view, batch);
+  core::back_project(image, view, batch);
   for (auto _ : state) {
     kernels.read(
-        {picture.data, picture.step[0]},
+        {image.data, image.step[0]},
         {view.x_px.data(), view.y_px.data(), view.u.data(), view.v.data(), batch.patch.data(),
          batch.u.data(), batch.v.data(), batch.r.data(), batch.g.data(), batch.b.data()},
         batch.size());
@@ -127,7 +127,7 @@ void register_all() {
   at_all_sizes(benchmark::RegisterBenchmark("project_and_sample", project_and_sample));
   for (const core::SamplingKernels& kernels : core::sampling_kernel_sets()) {
     at_all_sizes(benchmark::RegisterBenchmark(
-        ("read_picture/" + std::string(kernels.instruction_set)).c_str(), read_picture, kernels));
+        ("read_image/" + std::string(kernels.instruction_set)).c_str(), read_image, kernels));
   }
   const auto in_real_time = [](benchmark::internal::Benchmark* bench) {
     bench->Unit(benchmark::kMicrosecond)->MeasureProcessCPUTime()->UseRealTime();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pose of a frame of 1280x720: following the tags against searching the whole picture.
+// The pose of a frame of 1280x720: following the tags against searching the whole image.
 #include "capture/pose/board_tags.h"
 #include "capture/pose/joint_pose.h"
 #include "capture/pose/pose_estimator.h"
@@ -47,7 +47,7 @@ Board make_board(int columns, int rows) {
 class Print {
  public:
   explicit Print(const Board& board)
-      : picture_(cv::Size(kSide_px, kSide_px), CV_8U, cv::Scalar(215)) {
+      : image_(cv::Size(kSide_px, kSide_px), CV_8U, cv::Scalar(215)) {
     const TagFamily family = *find_tag_family(board.family, 1);
     for (const auto& [id, pattern] : find_tag_patterns(family, board)) {
       const Board::Tag& tag = board.tags.at(id);
@@ -56,10 +56,10 @@ class Print {
         if (bit.is_white) fill(tag, bit.centre, 1.0 / family.modules, kPaper);
       }
     }
-    cv::GaussianBlur(picture_, picture_, {}, 3);
+    cv::GaussianBlur(image_, image_, {}, 3);
   }
 
-  [[nodiscard]] const cv::Mat& picture() const { return picture_; }
+  [[nodiscard]] const cv::Mat& image() const { return image_; }
   /// Pixel (0, 0) is the centre of the first pixel.
   static cv::Point2f px(double x_m, double y_m) {
     return {static_cast<float>(kSide_px / 2.0 - 0.5 + kPx_per_m * x_m),
@@ -79,10 +79,10 @@ class Print {
     const double half_m = tag.size_m * side / 2;
     const cv::Point2f upper_left = px(middle.x() - half_m, middle.y() + half_m);
     const auto side_px = static_cast<int>(std::lround(2 * half_m * kPx_per_m));
-    picture_(cv::Rect(cvCeil(upper_left.x), cvCeil(upper_left.y), side_px, side_px)) = value;
+    image_(cv::Rect(cvCeil(upper_left.x), cvCeil(upper_left.y), side_px, side_px)) = value;
   }
 
-  cv::Mat picture_;
+  cv::Mat image_;
 };
 
 /// A hand-held camera that swings to and fro: 16 frames that may be repeated for ever.
@@ -151,7 +151,7 @@ class Recording {
       place.at<cv::Point2f>(static_cast<int>(i)) = Print::px(p.x(), p.y());
     }
     cv::Mat grey;
-    cv::remap(print.picture(), grey, place, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT,
+    cv::remap(print.image(), grey, place, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT,
               cv::Scalar(120));
     return grey;
   }
@@ -192,7 +192,7 @@ void BM_Track(benchmark::State& state) {
   state.counters["tags"] = tags / static_cast<double>(state.iterations());
 }
 
-/// The tracker alone: the grey picture is there.
+/// The tracker alone: the grey image is there.
 void BM_TrackGrey(benchmark::State& state) {
   const Recording& seen = recording(state);
   TagTracker tracker(seen.board(), seen.camera(), *find_tag_family("tag36h11", 1));
@@ -227,7 +227,7 @@ void BM_Grey(benchmark::State& state) {
   }
 }
 
-/// libapriltag alone on the grey picture: pictures of this size are decimated by 2.
+/// libapriltag alone on the grey image: images of this size are decimated by 2.
 void BM_Libapriltag(benchmark::State& state) {
   const Recording& seen = recording(state);
   const TagDetector detector(*find_tag_family("tag36h11", 1));
@@ -236,7 +236,7 @@ void BM_Libapriltag(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(detector.detect(grey));
 }
 
-/// BGR -> pose by searching every picture: detection, refined corners, joint pose.
+/// BGR -> pose by searching every image: detection, refined corners, joint pose.
 void BM_Detect(benchmark::State& state) {
   const Recording& seen = recording(state);
   BoardTagFinder finder(seen.board(), seen.camera());

@@ -12,7 +12,7 @@ namespace sheen::bench {
 
 /// The synthetic sessions' object of about `vertices` vertices and views from a walk round it, with
 /// their camera at 1280x720, lens distortion included: what a stage of a frame works on, without
-/// the pictures.
+/// the images.
 struct Walk {
   core::Mesh mesh;
   core::CameraModel camera;

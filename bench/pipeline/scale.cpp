@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // How memory and time of a fit grow: samples of a glossy object go straight into a representation,
-// view after view of a walk at the pace of the synthetic sessions, without pictures. One line of
+// view after view of a walk at the pace of the synthetic sessions, without images. One line of
 // CSV each time the number of views has doubled.
 #include "bench/micro/walk.h"
 #include "capture/synthetic/camera_path.h"

@@ -25,26 +25,26 @@ constexpr double kAlwaysFinePx = 0.5;  // views this good stay whatever the othe
 /// how it tapers.
 using Signature = std::array<double, 5>;
 
-Signature signature_of(const TargetView& view, const PictureSize& size) {
+Signature signature_of(const TargetView& view, const ImageSize& size) {
   // Bring the target to unit size, so that the homography's last row measures the taper.
   std::vector<cv::Point2d> from;
   std::vector<cv::Point2d> to;
   Eigen::AlignedBox2d target;
-  Eigen::AlignedBox2d picture;
+  Eigen::AlignedBox2d image;
   for (std::size_t i = 0; i < view.on_target.size(); ++i) {
     target.extend(view.on_target[i].head<2>());
-    picture.extend(view.in_picture[i]);
+    image.extend(view.in_image[i]);
   }
   const double unit = std::max(target.sizes().maxCoeff(), 1e-9);
   for (std::size_t i = 0; i < view.on_target.size(); ++i) {
     const Eigen::Vector2d p = (view.on_target[i].head<2>() - target.center()) / unit;
     from.emplace_back(p.x(), p.y());
-    to.emplace_back(view.in_picture[i].x(), view.in_picture[i].y());
+    to.emplace_back(view.in_image[i].x(), view.in_image[i].y());
   }
   const cv::Mat H = cv::findHomography(from, to);
   const double side = std::max(size.width_px, size.height_px);
-  Signature signature{picture.center().x() / side, picture.center().y() / side,
-                      picture.sizes().norm() / (2 * side), 0, 0};
+  Signature signature{image.center().x() / side, image.center().y() / side,
+                      image.sizes().norm() / (2 * side), 0, 0};
   if (!H.empty() && H.at<double>(2, 2) != 0) {
     signature[3] = std::clamp(2 * H.at<double>(2, 0) / H.at<double>(2, 2), -2.0, 2.0);
     signature[4] = std::clamp(2 * H.at<double>(2, 1) / H.at<double>(2, 2), -2.0, 2.0);
@@ -61,20 +61,20 @@ double squared_distance(const Signature& a, const Signature& b) {
 /// The views as OpenCV wants them.
 struct Points {
   std::vector<std::vector<cv::Point3f>> target;
-  std::vector<std::vector<cv::Point2f>> picture;
+  std::vector<std::vector<cv::Point2f>> image;
   std::vector<std::vector<cv::Point3f>> flat_target;  // for the first guess
 
   explicit Points(const std::vector<TargetView>& views) {
     for (const TargetView& view : views) {
       auto& target_points = target.emplace_back();
       auto& flat_points = flat_target.emplace_back();
-      auto& picture_points = picture.emplace_back();
+      auto& image_points = image.emplace_back();
       for (std::size_t i = 0; i < view.on_target.size(); ++i) {
         const Eigen::Vector3f p = view.on_target[i].cast<float>();
-        const Eigen::Vector2f q = view.in_picture[i].cast<float>();
+        const Eigen::Vector2f q = view.in_image[i].cast<float>();
         target_points.emplace_back(p.x(), p.y(), p.z());
         flat_points.emplace_back(p.x(), p.y(), 0.0F);
-        picture_points.emplace_back(q.x(), q.y());
+        image_points.emplace_back(q.x(), q.y());
       }
     }
   }
@@ -87,11 +87,11 @@ struct Solution {
   std::vector<cv::Mat> rotations, translations;
 };
 
-std::optional<Solution> solve(const Points& points, const PictureSize& size, int flags) {
-  const cv::Size picture_size(size.width_px, size.height_px);
+std::optional<Solution> solve(const Points& points, const ImageSize& size, int flags) {
+  const cv::Size image_size(size.width_px, size.height_px);
   Solution solution;
   try {
-    solution.K = cv::initCameraMatrix2D(points.flat_target, points.picture, picture_size);
+    solution.K = cv::initCameraMatrix2D(points.flat_target, points.image, image_size);
     // A poor first guess (parallel views) may lie anywhere; begin with something that can be.
     const double side = std::max(size.width_px, size.height_px);
     for (int i = 0; i < 2; ++i) {
@@ -102,10 +102,9 @@ std::optional<Solution> solve(const Points& points, const PictureSize& size, int
     cv::Mat extrinsic_sigmas;
     cv::Mat view_errors;
     const cv::TermCriteria stop(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 100, 1e-12);
-    cv::calibrateCamera(points.target, points.picture, picture_size, solution.K,
-                        solution.distortion, solution.rotations, solution.translations,
-                        solution.sigmas, extrinsic_sigmas, view_errors,
-                        flags | cv::CALIB_USE_INTRINSIC_GUESS, stop);
+    cv::calibrateCamera(points.target, points.image, image_size, solution.K, solution.distortion,
+                        solution.rotations, solution.translations, solution.sigmas,
+                        extrinsic_sigmas, view_errors, flags | cv::CALIB_USE_INTRINSIC_GUESS, stop);
   } catch (const cv::Exception&) {
     return std::nullopt;  // degenerate views
   }
@@ -113,7 +112,7 @@ std::optional<Solution> solve(const Points& points, const PictureSize& size, int
   return solution;
 }
 
-core::CameraModel to_camera(const Solution& solution, const PictureSize& size) {
+core::CameraModel to_camera(const Solution& solution, const ImageSize& size) {
   core::CameraModel::Intrinsics intrinsics;
   intrinsics.width_px = size.width_px;
   intrinsics.height_px = size.height_px;
@@ -144,19 +143,18 @@ Calibration::View measure_view(const TargetView& points, const Solution& solutio
                     predicted);
   double sum = 0;
   for (std::size_t p = 0; p < predicted.size(); ++p) {
-    view.errors_px.push_back(points.in_picture[p] -
-                             Eigen::Vector2d(predicted[p].x, predicted[p].y));
+    view.errors_px.push_back(points.in_image[p] - Eigen::Vector2d(predicted[p].x, predicted[p].y));
     sum += view.errors_px.back().squaredNorm();
   }
   view.rms_px = std::sqrt(sum / static_cast<double>(predicted.size()));
   return view;
 }
 
-/// Share of the picture's cells in which a point was seen.
-double coverage_of(const std::vector<Calibration::View>& views, const PictureSize& size) {
+/// Share of the image's cells in which a point was seen.
+double coverage_of(const std::vector<Calibration::View>& views, const ImageSize& size) {
   std::array<bool, static_cast<std::size_t>(kCoverageColumns * kCoverageRows)> seen{};
   for (const auto& view : views) {
-    for (const Eigen::Vector2d& p : view.points.in_picture) {
+    for (const Eigen::Vector2d& p : view.points.in_image) {
       const int column = static_cast<int>((p.x() + 0.5) / size.width_px * kCoverageColumns);
       const int row = static_cast<int>((p.y() + 0.5) / size.height_px * kCoverageRows);
       if (column < 0 || row < 0 || column >= kCoverageColumns || row >= kCoverageRows) continue;
@@ -185,17 +183,17 @@ TargetView points_within(const Calibration::View& view, double limit_px) {
   for (std::size_t i = 0; i < view.errors_px.size(); ++i) {
     if (view.errors_px[i].norm() > limit_px) continue;
     kept.on_target.push_back(view.points.on_target[i]);
-    kept.in_picture.push_back(view.points.in_picture[i]);
+    kept.in_image.push_back(view.points.in_image[i]);
   }
   return kept;
 }
 
 std::optional<Calibration> calibrate_once(const std::vector<TargetView>& views,
-                                          const PictureSize& size) {
+                                          const ImageSize& size) {
   if (views.size() < kMinViews) return std::nullopt;
   const Points points(views);
   auto solution = solve(points, size, 0);
-  // k3 bends the corners of the picture at will where no point was seen: only what is sure counts.
+  // k3 bends the corners of the image at will where no point was seen: only what is sure counts.
   if (!solution || std::abs(solution->distortion.at<double>(4)) <
                        kSurelyNotZero * solution->sigmas.at<double>(8)) {
     solution = solve(points, size, cv::CALIB_FIX_K3);
@@ -222,7 +220,7 @@ std::optional<Calibration> calibrate_once(const std::vector<TargetView>& views,
 
 }  // namespace
 
-std::vector<TargetView> choose_spread_views(std::vector<TargetView> views, const PictureSize& size,
+std::vector<TargetView> choose_spread_views(std::vector<TargetView> views, const ImageSize& size,
                                             std::size_t count) {
   if (views.size() <= count) return views;
   std::vector<Signature> signatures;
@@ -252,7 +250,7 @@ std::vector<TargetView> choose_spread_views(std::vector<TargetView> views, const
 }
 
 std::optional<Calibration> calibrate_camera(const std::vector<TargetView>& views,
-                                            const PictureSize& size) {
+                                            const ImageSize& size) {
   const auto first = calibrate_once(views, size);
   if (!first) return std::nullopt;
 
@@ -284,7 +282,7 @@ std::vector<std::string> find_faults(const Calibration& calibration,
   const double tilt_deg = calibration.tilt_spread_rad * 180 / std::numbers::pi;
   const double side = std::max(lens.width_px, lens.height_px);
   if (static_cast<int>(calibration.views.size()) < limits.min_views) {
-    faults.push_back(fmt::format("only {} pictures show the target, {} are needed",
+    faults.push_back(fmt::format("only {} images show the target, {} are needed",
                                  calibration.views.size(), limits.min_views));
   }
   if (calibration.rms_px > limits.max_rms_px) {
@@ -299,7 +297,7 @@ std::vector<std::string> find_faults(const Calibration& calibration,
   }
   if (calibration.coverage < limits.min_coverage) {
     faults.push_back(
-        fmt::format("points cover {:.0f} % of the picture, {:.0f} % are needed: bring the target "
+        fmt::format("points cover {:.0f} % of the image, {:.0f} % are needed: bring the target "
                     "to its borders and corners",
                     100 * calibration.coverage, 100 * limits.min_coverage));
   }

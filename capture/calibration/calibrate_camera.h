@@ -15,7 +15,7 @@ namespace sheen::capture {
 
 /// A camera with what speaks for it and against it.
 struct Calibration {
-  /// One picture that took part.
+  /// One image that took part.
   struct View {
     TargetView points;
     Eigen::Isometry3d camera_from_target = Eigen::Isometry3d::Identity();
@@ -28,7 +28,7 @@ struct Calibration {
   double rms_px = 0;                         ///< over all points
   std::vector<View> views;
   std::vector<int> dropped;    ///< frames most of whose points fitted far worse than the others'
-  double coverage = 0;         ///< share of the picture area (kCoverageCells) with points, [0, 1]
+  double coverage = 0;         ///< share of the image area (kCoverageCells) with points, [0, 1]
   double tilt_spread_rad = 0;  ///< largest angle between two planes of the target, camera frame
 };
 
@@ -37,14 +37,14 @@ inline constexpr int kCoverageColumns = 10;
 inline constexpr int kCoverageRows = 8;
 
 /// At most `count` views that differ most in place, size and perspective of the target.
-std::vector<TargetView> choose_spread_views(std::vector<TargetView> views, const PictureSize& size,
+std::vector<TargetView> choose_spread_views(std::vector<TargetView> views, const ImageSize& size,
                                             std::size_t count);
 
-/// OpenCV's calibration with k1 k2 p1 p2 and, where the pictures tell it from zero, k3. Points
-/// whose error is far above the others' are dropped, and views that lose half of theirs. Nothing for
-/// fewer than three views or when no lens fits.
+/// OpenCV's calibration with k1 k2 p1 p2 and, where the images tell it from zero, k3. Points
+/// whose error is far above the others' are dropped, and views that lose half of theirs. Nothing
+/// for fewer than three views or when no lens fits.
 std::optional<Calibration> calibrate_camera(const std::vector<TargetView>& views,
-                                            const PictureSize& size);
+                                            const ImageSize& size);
 
 /// What a calibration must show to be believed.
 struct CalibrationLimits {
@@ -52,7 +52,7 @@ struct CalibrationLimits {
   double min_tilt_spread_deg = 20;     ///< less leaves focal length and distance entangled
   double min_coverage = 0.4;           ///< less leaves the lens unmeasured where the object may be
   double max_focal_sigma = 0.005;      ///< of the focal length
-  double max_principal_sigma = 0.005;  ///< of the picture's longer side
+  double max_principal_sigma = 0.005;  ///< of the image's longer side
   double max_rms_px = 1.5;             ///< more: the target is not what was said
 };
 

@@ -18,12 +18,12 @@ constexpr int kMinCorners = 3;
 constexpr double kTypicalFocal = 1.1;  // over the longer side: between a phone and a webcam
 
 /// Some lens, until one is known.
-core::CameraModel plain_camera(const cv::Mat& picture) {
+core::CameraModel plain_camera(const cv::Mat& image) {
   core::CameraModel::Intrinsics intrinsics;
-  intrinsics.width_px = picture.cols;
-  intrinsics.height_px = picture.rows;
-  intrinsics.focal_px.setConstant(kTypicalFocal * std::max(picture.cols, picture.rows));
-  intrinsics.principal_px << (picture.cols - 1) / 2.0, (picture.rows - 1) / 2.0;
+  intrinsics.width_px = image.cols;
+  intrinsics.height_px = image.rows;
+  intrinsics.focal_px.setConstant(kTypicalFocal * std::max(image.cols, image.rows));
+  intrinsics.principal_px << (image.cols - 1) / 2.0, (image.rows - 1) / 2.0;
   return core::CameraModel(intrinsics);
 }
 
@@ -40,7 +40,7 @@ class BoardFinder : public TargetFinder {
     for (const TagDetection& tag : tags) {
       const auto corners = board_.tags.at(tag.id).corners_in_board();
       view.on_target.insert(view.on_target.end(), corners.begin(), corners.end());
-      view.in_picture.insert(view.in_picture.end(), tag.corners_px.begin(), tag.corners_px.end());
+      view.in_image.insert(view.in_image.end(), tag.corners_px.begin(), tag.corners_px.end());
     }
     refine(grey, plain_camera(grey), view);
     return view;
@@ -48,9 +48,9 @@ class BoardFinder : public TargetFinder {
 
   void refine(const cv::Mat& grey, const core::CameraModel& camera,
               TargetView& view) const override {
-    for (std::size_t first = 0; first + 4 <= view.in_picture.size(); first += 4) {
+    for (std::size_t first = 0; first + 4 <= view.in_image.size(); first += 4) {
       std::array<Eigen::Vector2d, 4> corners;
-      const auto begin = view.in_picture.begin() + static_cast<std::ptrdiff_t>(first);
+      const auto begin = view.in_image.begin() + static_cast<std::ptrdiff_t>(first);
       std::copy(begin, begin + 4, corners.begin());
       refine_corners(grey, camera, family_.modules, corners);
       std::copy(corners.begin(), corners.end(), begin);
@@ -88,7 +88,7 @@ class ChessboardFinder : public TargetFinder {
       for (int column = 0; column < board_.columns; ++column) {
         const auto i = static_cast<std::size_t>(row * board_.columns + column);
         view.on_target.emplace_back(column * board_.square_m, row * board_.square_m, 0);
-        view.in_picture.emplace_back(Eigen::Vector2f(corners[i].x, corners[i].y).cast<double>());
+        view.in_image.emplace_back(Eigen::Vector2f(corners[i].x, corners[i].y).cast<double>());
       }
     }
     return view;

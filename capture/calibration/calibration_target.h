@@ -23,11 +23,11 @@ struct Chessboard {
 
 using CalibrationTarget = std::variant<Board, Chessboard>;
 
-/// Points of a target as one picture shows them. Both lists have the same length.
+/// Points of a target as one image shows them. Both lists have the same length.
 struct TargetView {
   int frame_index = 0;
-  std::vector<Eigen::Vector3d> on_target;   ///< metres
-  std::vector<Eigen::Vector2d> in_picture;  ///< px
+  std::vector<Eigen::Vector3d> on_target;  ///< metres
+  std::vector<Eigen::Vector2d> in_image;   ///< px
 };
 
 /// Finds the points of one target. Move-only; one thread at a time.
@@ -35,10 +35,10 @@ class TargetFinder {
  public:
   virtual ~TargetFinder() = default;
 
-  /// The points in a CV_8UC1 picture; nothing when too few are seen to say anything.
+  /// The points in a CV_8UC1 image; nothing when too few are seen to say anything.
   virtual std::optional<TargetView> find(const cv::Mat& grey) = 0;
 
-  /// Measures the points of `view` in its picture once more, now that the lens is known: straight
+  /// Measures the points of `view` in its image once more, now that the lens is known: straight
   /// lines of the print are bent by it.
   virtual void refine(const cv::Mat& grey, const core::CameraModel& camera,
                       TargetView& view) const = 0;

@@ -83,11 +83,11 @@ void read_camera_matrix(const CameraReader& reader, core::CameraModel::Intrinsic
   if (!(intrinsics.focal_px.minCoeff() > 0) || intrinsics.focal_px.maxCoeff() > largest_focal) {
     reader.fail("the focal lengths are not positive or not believable");
   }
-  // Half a picture outside still leaves room for crops.
+  // Half an image outside still leaves room for crops.
   const Eigen::Vector2d size(intrinsics.width_px, intrinsics.height_px);
   const Eigen::Vector2d relative = intrinsics.principal_px.cwiseQuotient(size);
   if (!(relative.minCoeff() > -0.5) || !(relative.maxCoeff() < 1.5)) {
-    reader.fail("the principal point lies far outside the picture");
+    reader.fail("the principal point lies far outside the image");
   }
 }
 
@@ -111,7 +111,7 @@ core::CameraModel read_camera(const std::filesystem::path& path) {
     read_camera_matrix(reader, intrinsics);
     read_distortion(reader, intrinsics);
     core::CameraModel camera(intrinsics);
-    if (!(camera.valid_radius() > 0.01)) reader.fail("the distortion folds the picture over");
+    if (!(camera.valid_radius() > 0.01)) reader.fail("the distortion folds the image over");
     return camera;
   } catch (const core::Error&) {
     throw;

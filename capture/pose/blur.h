@@ -11,7 +11,7 @@
 
 namespace sheen::capture {
 
-/// Width of the tags' edges from 10 to 90 % of their contrast, px: about 1.5 in a sharp picture,
+/// Width of the tags' edges from 10 to 90 % of their contrast, px: about 1.5 in a sharp image,
 /// more by defocus and motion. Motion widens only the edges it crosses, so each tag counts by the
 /// wider of its two pairs of sides; the median over the tags is returned. The profiles reach nearly
 /// one module to both sides, which bounds what can be measured on small tags. No value when no

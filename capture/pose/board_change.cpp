@@ -37,16 +37,16 @@ cv::Point subpixel(const cv::Point2d& p) {
   return {cvRound(p.x * 16), cvRound(p.y * 16)};  // 4 fractional bits
 }
 
-void draw_tag(cv::Mat& picture, const Map& map, const Board::Tag& tag, const cv::Scalar& colour,
+void draw_tag(cv::Mat& image, const Map& map, const Board::Tag& tag, const cv::Scalar& colour,
               bool filled) {
   std::vector<cv::Point> outline;
   for (const Eigen::Vector3d& corner : tag.corners_in_board()) {
     outline.push_back(subpixel(map.at(corner)));
   }
   if (filled) {
-    cv::fillConvexPoly(picture, outline, colour, cv::LINE_AA, 4);
+    cv::fillConvexPoly(image, outline, colour, cv::LINE_AA, 4);
   } else {
-    cv::polylines(picture, outline, true, colour, 1, cv::LINE_AA, 4);
+    cv::polylines(image, outline, true, colour, 1, cv::LINE_AA, 4);
   }
 }
 
@@ -86,19 +86,19 @@ Extent measure(const Board& board) {
   return extent;
 }
 
-void draw_shift(cv::Mat& picture, const Map& map, const Board::Tag& tag, const TagChange& change,
+void draw_shift(cv::Mat& image, const Map& map, const Board::Tag& tag, const TagChange& change,
                 double factor, double highest_m) {
   const Eigen::Vector3d from = tag.board_from_tag.translation();
-  cv::arrowedLine(picture, map.at(from), map.at(from + factor * change.shift_m),
+  cv::arrowedLine(image, map.at(from), map.at(from + factor * change.shift_m),
                   colour_of(change.shift_m.z(), highest_m), 2, cv::LINE_AA, 0, 0.2);
-  cv::putText(picture, fmt::format("{} {:+.2f}", change.id, 1e3 * change.shift_m.z()),
+  cv::putText(image, fmt::format("{} {:+.2f}", change.id, 1e3 * change.shift_m.z()),
               map.at(tag.corners_in_board()[0]) + cv::Point2d(3, -4), cv::FONT_HERSHEY_SIMPLEX,
               0.38, kInk, 1, cv::LINE_AA);
 }
 
-void write_line(cv::Mat& picture, int above_foot_px, const std::string& text) {
-  cv::putText(picture, text, {kMarginPx, picture.rows - above_foot_px}, cv::FONT_HERSHEY_SIMPLEX,
-              0.45, kInk, 1, cv::LINE_AA);
+void write_line(cv::Mat& image, int above_foot_px, const std::string& text) {
+  cv::putText(image, text, {kMarginPx, image.rows - above_foot_px}, cv::FONT_HERSHEY_SIMPLEX, 0.45,
+              kInk, 1, cv::LINE_AA);
 }
 
 }  // namespace
@@ -128,23 +128,23 @@ cv::Mat draw_board_change(const Board& before, const Board& after) {
   const Eigen::Vector2d size_px =
       extent.box.sizes() * scale + Eigen::Vector2d::Constant(2 * kMarginPx);
   const Map map{extent.box.min(), scale, size_px.y()};
-  cv::Mat picture(static_cast<int>(size_px.y()) + kLegendPx,
-                  std::max(static_cast<int>(size_px.x()), 420), CV_8UC3, kPaper);
+  cv::Mat image(static_cast<int>(size_px.y()) + kLegendPx,
+                std::max(static_cast<int>(size_px.x()), 420), CV_8UC3, kPaper);
 
   const double factor = magnification(extent.shift_m, extent.tag_m);
   for (const TagChange& change : changes) {
-    draw_tag(picture, map, before.tags.at(change.id), kBefore, true);
-    draw_tag(picture, map, after.tags.at(change.id), colour_of(change.shift_m.z(), extent.height_m),
+    draw_tag(image, map, before.tags.at(change.id), kBefore, true);
+    draw_tag(image, map, after.tags.at(change.id), colour_of(change.shift_m.z(), extent.height_m),
              false);
   }
   for (const TagChange& change : changes) {
-    draw_shift(picture, map, before.tags.at(change.id), change, factor, extent.height_m);
+    draw_shift(image, map, before.tags.at(change.id), change, factor, extent.height_m);
   }
-  write_line(picture, 34,
+  write_line(image, 34,
              fmt::format("arrows {:g} x: largest {:.2f} mm; numbers: tag, height in mm", factor,
                          1e3 * extent.shift_m));
-  write_line(picture, 14, "red: higher, green: lower");
-  return picture;
+  write_line(image, 14, "red: higher, green: lower");
+  return image;
 }
 
 }  // namespace sheen::capture

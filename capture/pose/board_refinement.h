@@ -10,11 +10,11 @@
 
 namespace sheen::capture {
 
-/// A board as its pictures say it is.
+/// A board as its images say it is.
 struct BoardRefinement {
-  Board board;                ///< tags seen in too few pictures keep their place
+  Board board;                ///< tags seen in too few images keep their place
   core::CameraModel camera;   ///< the given one unless the lens was refined
-  int views = 0;              ///< pictures that took part
+  int views = 0;              ///< images that took part
   int tags = 0;               ///< tags that were moved
   double rms_before_px = 0;   ///< over the corners that took part, each view at its best pose
   double rms_after_px = 0;    ///< the same with the refined board
@@ -28,7 +28,7 @@ enum class LensRefinement { off, on };
 /// corners, Huber loss). Each tag stays a square but may lie anywhere and at any tilt: paper curls.
 /// All sizes change by one common factor. The board frame and its scale stay: the refined tags are
 /// laid on the given ones by the best similarity, so that T_stage_object keeps its meaning. `views`
-/// holds the tags detected in each picture, ids unique within one. With the lens, radial terms
+/// holds the tags detected in each image, ids unique within one. With the lens, radial terms
 /// beyond the second move only where `camera` has them; its views should be tilted by 15 degrees
 /// and more, or focal length and distance cannot be told apart. Nothing when fewer than three views
 /// pose or no two tags are seen together.

@@ -23,7 +23,7 @@ inline constexpr std::size_t kFirstHighTerm = 8;  ///< index of k3
 
 LensParameters lens_parameters(const core::CameraModel& camera);
 
-/// `camera` with another lens, of the same picture size.
+/// `camera` with another lens, of the same image size.
 core::CameraModel camera_with(const LensParameters& lens, const core::CameraModel& camera);
 
 /// Distance of the four corners of one tag in one view from where the layout puts them, px: 8

@@ -11,7 +11,7 @@
 
 namespace sheen::capture {
 
-/// One side of a tag's black square in a picture: straight on the print, bent by the lens.
+/// One side of a tag's black square in an image: straight on the print, bent by the lens.
 class TagSide {
  public:
   /// Through the corners `begin_px` and `end_px`; `inside_px` is any point of the tag.
@@ -35,7 +35,7 @@ class TagSide {
 /// Brightness along a short straight line across an edge, from inside the tag to outside.
 class EdgeProfile {
  public:
-  /// Line of length 2 `half_length_px` around `centre_px`; no value where it leaves the picture.
+  /// Line of length 2 `half_length_px` around `centre_px`; no value where it leaves the image.
   /// `grey` is CV_8UC1, `outward` a unit vector.
   static std::optional<EdgeProfile> sample(const cv::Mat& grey, const Eigen::Vector2d& centre_px,
                                            const Eigen::Vector2d& outward, double half_length_px);

@@ -15,10 +15,10 @@
 
 namespace sheen::capture {
 
-/// Edges of the print found along the outlines of tags in a CV_8UC1 picture. Keeps its buffers.
+/// Edges of the print found along the outlines of tags in a CV_8UC1 image. Keeps its buffers.
 class EdgeSearch {
  public:
-  /// A side of a tag as the picture shows it.
+  /// A side of a tag as the image shows it.
   struct Side {
     std::size_t view = 0;
     std::size_t side = 0;

@@ -21,9 +21,9 @@ struct Pose {
 };
 
 struct Correspondences {
-  std::vector<int> tag_ids;          ///< one per four corners
-  std::vector<cv::Point3d> board;    ///< metres
-  std::vector<cv::Point2d> picture;  ///< px
+  std::vector<int> tag_ids;        ///< one per four corners
+  std::vector<cv::Point3d> board;  ///< metres
+  std::vector<cv::Point2d> image;  ///< px
 };
 
 struct Lens {
@@ -62,7 +62,7 @@ Correspondences match(const Board& board, const std::vector<TagDetection>& detec
     const auto corners = tag->second.corners_in_board();
     for (std::size_t c = 0; c < 4; ++c) {
       matches.board.emplace_back(corners[c].x(), corners[c].y(), corners[c].z());
-      matches.picture.emplace_back(detection.corners_px[c].x(), detection.corners_px[c].y());
+      matches.image.emplace_back(detection.corners_px[c].x(), detection.corners_px[c].y());
     }
   }
   return matches;
@@ -75,7 +75,7 @@ Correspondences keep_tags(const Correspondences& all, const std::vector<bool>& k
     kept.tag_ids.push_back(all.tag_ids[i]);
     for (std::size_t c = 4 * i; c < 4 * i + 4; ++c) {
       kept.board.push_back(all.board[c]);
-      kept.picture.push_back(all.picture[c]);
+      kept.image.push_back(all.image[c]);
     }
   }
   return kept;
@@ -91,7 +91,7 @@ std::vector<double> residuals(const Correspondences& matches, const Lens& lens, 
   for (std::size_t i = 0; i < projected.size(); ++i) {
     const cv::Point3d& p = matches.board[i];
     const double depth = (camera_from_board * Eigen::Vector3d(p.x, p.y, p.z)).z();
-    distances[i] = depth > 0 ? cv::norm(projected[i] - matches.picture[i])
+    distances[i] = depth > 0 ? cv::norm(projected[i] - matches.image[i])
                              : std::numeric_limits<double>::infinity();
   }
   return distances;
@@ -113,13 +113,13 @@ double bounded_cost(const std::vector<double>& distances) {
 }
 
 /// Adds the solutions of one of OpenCV's solvers. `board_from_points` brings its frame to ours.
-void add_starts(const std::vector<cv::Point3d>& points, const std::vector<cv::Point2d>& picture,
+void add_starts(const std::vector<cv::Point3d>& points, const std::vector<cv::Point2d>& image,
                 const Lens& lens, int solver, const Eigen::Isometry3d& board_from_points,
                 std::vector<Pose>& starts) {
   std::vector<cv::Mat> rotations;
   std::vector<cv::Mat> translations;
   try {
-    cv::solvePnPGeneric(points, picture, lens.K, lens.distortion, rotations, translations, false,
+    cv::solvePnPGeneric(points, image, lens.K, lens.distortion, rotations, translations, false,
                         static_cast<cv::SolvePnPMethod>(solver));
   } catch (const cv::Exception&) {
     return;  // degenerate points: this solver has no answer, others may
@@ -154,16 +154,16 @@ void add_planar_starts(const Correspondences& matches, std::size_t first, std::s
     const Eigen::Vector3d p = board_from_plane.inverse() * points.col(i);
     flat.emplace_back(p.x(), p.y(), 0);
   }
-  const auto begin = matches.picture.begin() + static_cast<std::ptrdiff_t>(first);
-  const std::vector<cv::Point2d> picture(begin, begin + static_cast<std::ptrdiff_t>(count));
-  add_starts(flat, picture, lens, cv::SOLVEPNP_IPPE, board_from_plane, starts);
+  const auto begin = matches.image.begin() + static_cast<std::ptrdiff_t>(first);
+  const std::vector<cv::Point2d> image(begin, begin + static_cast<std::ptrdiff_t>(count));
+  add_starts(flat, image, lens, cv::SOLVEPNP_IPPE, board_from_plane, starts);
 }
 
 /// All corners at once, and each tag on its own in case a few tags spoil the whole.
 std::vector<Pose> find_starts(const Correspondences& matches, const Lens& lens) {
   std::vector<Pose> starts;
-  add_starts(matches.board, matches.picture, lens, cv::SOLVEPNP_SQPNP,
-             Eigen::Isometry3d::Identity(), starts);
+  add_starts(matches.board, matches.image, lens, cv::SOLVEPNP_SQPNP, Eigen::Isometry3d::Identity(),
+             starts);
   add_planar_starts(matches, 0, matches.board.size(), lens, starts);
   for (std::size_t first = 0; first < matches.board.size(); first += 4) {
     add_planar_starts(matches, first, 4, lens, starts);
@@ -177,7 +177,7 @@ Vector6d solve_step(const cv::Mat& J, const std::vector<cv::Point2d>& projected,
   Eigen::Matrix<double, 6, 6> A = Eigen::Matrix<double, 6, 6>::Zero();
   Vector6d g = Vector6d::Zero();
   for (std::size_t i = 0; i < projected.size(); ++i) {
-    const cv::Point2d error = matches.picture[i] - projected[i];
+    const cv::Point2d error = matches.image[i] - projected[i];
     const double distance = cv::norm(error);
     const double weight = distance <= huber_px ? 1 : huber_px / distance;
     // Columns of OpenCV's Jacobian: rotation vector, translation, then the intrinsics.

@@ -14,7 +14,7 @@
 namespace sheen::capture {
 namespace {
 
-/// Follows the tags from frame to frame; searches the whole picture where that fails.
+/// Follows the tags from frame to frame; searches the whole image where that fails.
 class TagPoseEstimator : public PoseEstimator {
  public:
   TagPoseEstimator(const Board& board, const core::CameraModel& camera, const PoseGate& gate)
@@ -54,7 +54,7 @@ class TagPoseEstimator : public PoseEstimator {
     if (tags.empty()) return PoseRejection::no_tags;
     if (static_cast<int>(tags.size()) < gate_.min_tags) return PoseRejection::too_few_tags;
 
-    // Refuse smeared pictures before their corners are believed.
+    // Refuse smeared images before their corners are believed.
     const double blur_px =
         tag_edge_width(grey, camera_, finder_.family().modules, tags).value_or(0);
     if (blur_px > gate_.max_blur_px) return PoseRejection::blur;

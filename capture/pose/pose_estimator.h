@@ -46,7 +46,7 @@ class PoseEstimator {
 };
 
 /// Follows the board's tags by their edges; where the prediction fails it detects them in the whole
-/// picture, in the same frame. Results depend on the frames alone, not on time.
+/// image, in the same frame. Results depend on the frames alone, not on time.
 std::unique_ptr<PoseEstimator> make_tag_pose_estimator(const Board& board,
                                                        const core::CameraModel& camera,
                                                        const PoseGate& gate);

@@ -30,7 +30,7 @@ class TagDetector::AprilTag : public Implementation {
   }
 
   std::vector<TagDetection> detect(const cv::Mat& grey) override {
-    // Decimation costs small tags; large pictures can afford it.
+    // Decimation costs small tags; large images can afford it.
     detector_->quad_decimate = grey.total() < kDecimateFromPixels ? 1.0F : 2.0F;
     image_u8_t image{grey.cols, grey.rows, static_cast<int>(grey.step), grey.data};
     const std::unique_ptr<zarray_t, void (*)(zarray_t*)> found(

@@ -21,7 +21,7 @@ struct TagDetection {
   double quality = 0;  ///< larger is surer; comparable within one family only
 };
 
-/// Finds the tags of one family in 8-bit pictures. Move-only; one thread at a time.
+/// Finds the tags of one family in 8-bit images. Move-only; one thread at a time.
 class TagDetector {
  public:
   explicit TagDetector(const TagFamily& family);

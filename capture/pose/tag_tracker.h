@@ -39,7 +39,7 @@ class TagTracker {
  public:
   TagTracker(const Board& board, const core::CameraModel& camera, const TagFamily& family);
 
-  /// No value when no pose near `predicted` explains the CV_8UC1 picture; edges are found up to one
+  /// No value when no pose near `predicted` explains the CV_8UC1 image; edges are found up to one
   /// and a half modules away.
   std::optional<TrackedPose> track(const cv::Mat& grey, const Eigen::Isometry3d& predicted);
 

@@ -13,20 +13,20 @@ namespace {
 
 constexpr double kSmallestModule_px = 2;  // below it neighbouring edges melt into each other
 
-bool overlaps_picture(const std::array<Eigen::Vector2d, 4>& corners_px,
-                      const core::CameraModel& camera) {
+bool overlaps_image(const std::array<Eigen::Vector2d, 4>& corners_px,
+                    const core::CameraModel& camera) {
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector2d& corner : corners_px) box.extend(corner);
-  const Eigen::AlignedBox2d picture(Eigen::Vector2d::Zero(),
-                                    Eigen::Vector2d(camera.width_px() - 1, camera.height_px() - 1));
-  return picture.intersects(box);
+  const Eigen::AlignedBox2d image(Eigen::Vector2d::Zero(),
+                                  Eigen::Vector2d(camera.width_px() - 1, camera.height_px() - 1));
+  return image.intersects(box);
 }
 
 double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-/// Bilinear read-out; no value outside the picture.
+/// Bilinear read-out; no value outside the image.
 std::optional<double> brightness(const cv::Mat& grey, const Eigen::Vector2d& px) {
   const bool is_inside =
       px.x() >= 0 && px.y() >= 0 && px.x() < grey.cols - 1 && px.y() < grey.rows - 1;
@@ -54,7 +54,7 @@ std::optional<TagView> TagView::find(const BoardTag& tag, const core::CameraMode
     if (!px) return std::nullopt;
     view.corners_px_[c] = *px;
   }
-  if (!overlaps_picture(view.corners_px_, camera)) return std::nullopt;
+  if (!overlaps_image(view.corners_px_, camera)) return std::nullopt;
 
   // Measure its modules; a tag seen from behind has negative ones.
   const auto& corners = view.corners_px_;
@@ -78,7 +78,7 @@ std::optional<EdgePoint> TagView::edge(const core::CameraModel& camera, std::siz
   const Eigen::Vector3d point = corners_in_camera_[side] + t * along;
   const auto projected = core::project_with_derivative(camera, point);
   if (!projected) return std::nullopt;
-  // Corners run counter-clockwise on the print; y points down in the picture.
+  // Corners run counter-clockwise on the print; y points down in the image.
   const Eigen::Vector2d tangent = projected->pixel_by_point * along;
   const Eigen::Vector2d outward = Eigen::Vector2d(-tangent.y(), tangent.x()).normalized();
   const Eigen::Vector3d outward_by_point = projected->pixel_by_point.transpose() * outward;

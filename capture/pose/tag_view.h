@@ -21,17 +21,17 @@ struct BoardTag {
   TagPattern pattern;
 };
 
-/// A point of a tag's outline where a pose puts it in the picture.
+/// A point of a tag's outline where a pose puts it in the image.
 struct EdgePoint {
   Eigen::Vector2d px;
   Eigen::Vector2d outward;  ///< unit vector across the edge, out of the tag
   Twist outward_by_twist;   ///< how far the edge moves outwards with the board, px
 };
 
-/// A tag of the board where a pose puts it in the picture, through the lens.
+/// A tag of the board where a pose puts it in the image, through the lens.
 class TagView {
  public:
-  /// No value for tags behind the camera, turned away, outside the picture or too small to follow.
+  /// No value for tags behind the camera, turned away, outside the image or too small to follow.
   static std::optional<TagView> find(const BoardTag& tag, const core::CameraModel& camera,
                                      const Eigen::Isometry3d& camera_from_board);
 
@@ -50,8 +50,8 @@ class TagView {
   [[nodiscard]] std::optional<Eigen::Vector2d> point_px(const core::CameraModel& camera,
                                                         std::size_t side, double t) const;
 
-  /// Correlation of the tag's bits with the CV_8UC1 picture, -1 to 1; -1 when fewer than three
-  /// quarters of them lie in the picture.
+  /// Correlation of the tag's bits with the CV_8UC1 image, -1 to 1; -1 when fewer than three
+  /// quarters of them lie in the image.
   [[nodiscard]] double pattern_correlation(const core::CameraModel& camera,
                                            const cv::Mat& grey) const;
 

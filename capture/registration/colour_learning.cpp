@@ -12,7 +12,7 @@ constexpr int kStepPx = 3;           // of the grid on which pixels are looked a
 constexpr double kClearance = 0.35;  // of the reach: thin parts of the object must keep some pixels
 constexpr double kSurroundings = 2.5;  // of the reach, how far round the object
 
-/// Bounding box of the object in a picture, grown by a margin and cut to the picture.
+/// Bounding box of the object in an image, grown by a margin and cut to the image.
 cv::Rect box_around(const ContourFinder& contours, const core::CameraModel& camera,
                     const Eigen::Isometry3d& camera_from_object, double margin_px) {
   Eigen::AlignedBox2d box;

@@ -8,7 +8,7 @@
 
 namespace sheen::capture {
 
-/// Adds a picture's colours within the object and round it, both some way off its supposed outline,
+/// Adds an image's colours within the object and round it, both some way off its supposed outline,
 /// which may be wrong by `reach_px`. `image` is CV_8UC3, BGR.
 void learn_colours_of(const cv::Mat& image, const ContourFinder& contours,
                       const core::CameraModel& camera, const Eigen::Isometry3d& camera_from_object,

@@ -14,12 +14,12 @@
 
 namespace sheen::capture {
 
-/// A place where the object ends in a picture: against the background or against a farther part of
+/// A place where the object ends in an image: against the background or against a farther part of
 /// itself.
 struct ContourPoint {
   Eigen::Vector3d in_object;  ///< on the surface, metres
   Eigen::Vector2d pixel;      ///< its image
-  Eigen::Vector2d outward;    ///< unit vector in the picture, out of the nearer surface
+  Eigen::Vector2d outward;    ///< unit vector in the image, out of the nearer surface
 };
 
 /// Finds silhouette and depth edges of a mesh: edges between a face turned to the camera and one
@@ -29,7 +29,7 @@ class ContourFinder {
   /// `mesh` must outlive the finder.
   explicit ContourFinder(const core::Mesh& mesh);
 
-  /// Points about `spacing_px` apart along the visible contours within the picture.
+  /// Points about `spacing_px` apart along the visible contours within the image.
   [[nodiscard]] std::vector<ContourPoint> find(const core::CameraModel& camera,
                                                const Eigen::Isometry3d& camera_from_object,
                                                double spacing_px) const;
@@ -57,7 +57,7 @@ class ContourFinder {
   struct EdgeImage {
     Eigen::Vector3d begin, end;  ///< object frame
     Eigen::Vector3d normal;      ///< of the surface, not of unit length
-    Eigen::Vector2d across;      ///< unit vector in the picture, away from the nearer face
+    Eigen::Vector2d across;      ///< unit vector in the image, away from the nearer face
     double length_px = 0;
   };
 

@@ -10,7 +10,7 @@
 
 namespace sheen::capture {
 
-/// Where a picture has the object's edge, along the line across a contour point.
+/// Where an image has the object's edge, along the line across a contour point.
 struct ContourMatch {
   double offset_px = 0;  ///< from the contour point, positive outwards
   double weight = 0;     ///< trust, [0, 1]
@@ -18,7 +18,7 @@ struct ContourMatch {
 
 /// Most probable place at which colours of the object end and those of the surroundings begin,
 /// within +-`reach_px` of the point. Works from afar and is not led astray by edges that lie within
-/// either side; no sharper than a few pixels. Nothing when the line leaves the picture or tells
+/// either side; no sharper than a few pixels. Nothing when the line leaves the image or tells
 /// nothing. `image` is CV_8UC3, BGR.
 std::optional<ContourMatch> match_by_colour(const cv::Mat& image, const ColourStatistics& colours,
                                             const ContourPoint& point, int reach_px);

@@ -12,17 +12,17 @@
 
 namespace sheen::capture {
 
-/// A picture whose camera is known.
+/// An image whose camera is known.
 struct RegistrationView {
   cv::Mat image;  ///< CV_8UC3, BGR
   Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
-  double weight = 1;  ///< trust in picture and pose, > 0
+  double weight = 1;  ///< trust in image and pose, > 0
 };
 
-/// Where an object stands on the board, as its outline in many pictures says.
+/// Where an object stands on the board, as its outline in many images says.
 struct Registration {
   Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();
-  double residual_px = 0;    ///< median distance of the outline from the pictures' edges
+  double residual_px = 0;    ///< median distance of the outline from the images' edges
   double matched_share = 0;  ///< of the outline that has an edge within 2 px, [0, 1]
   double motion_px = 0;      ///< mean distance by which the outline moved from the guess
   double translation_m = 0;  ///< how far the object's centre moved from the guess
@@ -30,7 +30,7 @@ struct Registration {
   double sigma_m = 0;        ///< standard deviation of the centre, in its worst direction
   double sigma_rad = 0;      ///< of the rotation, about its worst axis
   std::size_t points = 0;    ///< of the outline that were matched
-  int views = 0;             ///< pictures that agree with the others
+  int views = 0;             ///< images that agree with the others
   std::vector<bool> agrees;  ///< which, by view
 };
 
@@ -40,9 +40,9 @@ struct RegistrationLimits {
   double min_matched_share = 0.25;  ///< less of the outline with an edge is no answer
 };
 
-/// Moves the object until its silhouette and depth edges lie on edges of the pictures: Gauss-Newton
+/// Moves the object until its silhouette and depth edges lie on edges of the images: Gauss-Newton
 /// with robust weights over all views, first on where the object's colours end (learned from the
-/// pictures themselves; from afar), then on edges (to a fraction of a pixel), the search
+/// images themselves; from afar), then on edges (to a fraction of a pixel), the search
 /// distance falling from step to step. The uncertainty comes from the disagreement of the views.
 /// Nothing when too little of the outline finds an edge. One thread: the result is always the same.
 std::optional<Registration> register_object(const core::Mesh& mesh, const core::CameraModel& camera,

@@ -22,7 +22,7 @@ struct ChosenView {
 };
 
 /// At most `count` frames spread over the recording: the slowest of each stretch, since a moving
-/// camera smears and a rolling shutter bends. Speed is that of `centre_in_board` in the picture
+/// camera smears and a rolling shutter bends. Speed is that of `centre_in_board` in the image
 /// between neighbouring frames of `frames`, which ascend by index.
 std::vector<ChosenView> choose_views(const std::vector<PosedFrameIndex>& frames,
                                      const core::CameraModel& camera,

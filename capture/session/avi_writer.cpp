@@ -24,7 +24,7 @@ std::uint32_t size_between(std::uint64_t begin, std::uint64_t end) {
 
 }  // namespace
 
-AviWriter::AviWriter(const std::filesystem::path& path, const PictureSize& size, double fps,
+AviWriter::AviWriter(const std::filesystem::path& path, const ImageSize& size, double fps,
                      std::uint64_t segment_bytes)
     : file_(FileHandle::create(path)), size_(size), fps_(fps), segment_bytes_(segment_bytes) {
   if (put(headers(false)) != 0) {
@@ -45,8 +45,8 @@ int AviWriter::put(const std::vector<std::uint8_t>& bytes) {
 
 int AviWriter::append(std::span<const std::uint8_t> jpeg) {
   constexpr std::uint64_t index_entry = 24;  // of both kinds of index
-  const std::uint64_t used = end_ - segments_.back().begin + index_entry * pictures_.size();
-  if (!pictures_.empty() && used + jpeg.size() > segment_bytes_) {
+  const std::uint64_t used = end_ - segments_.back().begin + index_entry * images_.size();
+  if (!images_.empty() && used + jpeg.size() > segment_bytes_) {
     if (const int fault = open_segment(); fault != 0) return fault;
   }
   RiffBytes header;
@@ -60,7 +60,7 @@ int AviWriter::append(std::span<const std::uint8_t> jpeg) {
   const std::uint32_t offset = size_between(segments_.back().movie, end_);
   if (const int fault = put(chunk_); fault != 0) return fault;
   const auto size = static_cast<std::uint32_t>(jpeg.size());
-  pictures_.push_back({offset, size});
+  images_.push_back({offset, size});
   ++segments_.back().frames;
   ++frames_;
   largest_ = std::max(largest_, size);
@@ -92,9 +92,9 @@ int AviWriter::close_segment() {
   bytes.text("00dc");
   bytes.u64(segment.movie);
   bytes.u32(0);
-  for (const Picture& picture : pictures_) {
-    bytes.u32(picture.offset + 8);  // of its data
-    bytes.u32(picture.size);
+  for (const Image& image : images_) {
+    bytes.u32(image.offset + 8);  // of its data
+    bytes.u32(image.size);
   }
   bytes.close(index);
   segment.index = end_;
@@ -103,17 +103,17 @@ int AviWriter::close_segment() {
 
   if (segments_.size() == 1) {  // the index of AVI 1.0, for players that know no other
     const std::size_t old_index = bytes.open("idx1");
-    for (const Picture& picture : pictures_) {
+    for (const Image& image : images_) {
       bytes.text("00dc");
       bytes.u32(kKeyFrame);
-      bytes.u32(picture.offset);
-      bytes.u32(picture.size);
+      bytes.u32(image.offset);
+      bytes.u32(image.size);
     }
     bytes.close(old_index);
   }
   if (const int fault = put(bytes.take()); fault != 0) return fault;
   segment.end = end_;
-  pictures_.clear();
+  images_.clear();
 
   // The first segment's sizes are completed with the headers.
   if (segments_.size() == 1) return 0;

@@ -13,9 +13,9 @@ namespace sheen::capture {
 
 class RiffBytes;
 
-/// Writes an AVI file of JPEG pictures as they come: AVI 1.0 with OpenDML segments and indices, so
+/// Writes an AVI file of JPEG images as they come: AVI 1.0 with OpenDML segments and indices, so
 /// of any length. Until it is closed the headers say that the length is open; whatever happens
-/// before, the pictures that were appended are found by walking the chunks.
+/// before, the images that were appended are found by walking the chunks.
 class AviWriter {
  public:
   /// Players that know AVI 1.0 only read the first segment.
@@ -23,11 +23,11 @@ class AviWriter {
 
   /// Makes the file; `fps` > 0. Throws core::Error: bad_input when it exists or cannot be made,
   /// run_failed when the disk is full.
-  AviWriter(const std::filesystem::path& path, const PictureSize& size, double fps,
+  AviWriter(const std::filesystem::path& path, const ImageSize& size, double fps,
             std::uint64_t segment_bytes = kSegmentBytes);
 
-  /// Appends a picture's bytes as they are. Returns 0 or errno; after a fault nothing of the
-  /// picture is left.
+  /// Appends an image's bytes as they are. Returns 0 or errno; after a fault nothing of the
+  /// image is left.
   [[nodiscard]] int append(std::span<const std::uint8_t> jpeg);
 
   /// Completes indices and headers. Returns 0 or errno; after a fault the file stays open-ended.
@@ -47,7 +47,7 @@ class AviWriter {
     std::uint32_t index_bytes = 0;
     std::uint32_t frames = 0;
   };
-  struct Picture {
+  struct Image {
     std::uint32_t offset = 0;  ///< of its chunk, from the word movi of its segment
     std::uint32_t size = 0;
   };
@@ -61,14 +61,14 @@ class AviWriter {
   void put_index_of_segments(RiffBytes& bytes, bool is_complete) const;
 
   FileHandle file_;
-  PictureSize size_;
+  ImageSize size_;
   double fps_;
   std::uint64_t segment_bytes_;
   std::uint64_t end_ = 0;  ///< of what is written
   std::uint32_t frames_ = 0;
   std::uint32_t largest_ = 0;
   std::vector<Segment> segments_;
-  std::vector<Picture> pictures_;  ///< of the last segment
+  std::vector<Image> images_;  ///< of the last segment
   std::vector<std::uint8_t> chunk_;
 };
 

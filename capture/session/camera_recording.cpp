@@ -3,8 +3,8 @@
 
 #include "capture/session/frame_stamps.h"
 #include "capture/source/avi_reader.h"
+#include "capture/source/image_check.h"
 #include "capture/source/jpeg_decoder.h"
-#include "capture/source/picture_check.h"
 
 #include <algorithm>
 #include <chrono>
@@ -43,7 +43,7 @@ class LiveFrames : public FrameSource {
     const auto size = jpeg_size(jpeg);
     if (!size) return std::nullopt;
     const CameraDescription camera = recording_.status().description;
-    check_picture_size(camera.device, *size, {camera.width_px, camera.height_px});
+    check_image_size(camera.device, *size, {camera.width_px, camera.height_px});
     Frame frame;
     if (!decode_jpeg(jpeg, *size, frame.image)) return std::nullopt;
     frame.time_s = stamp_seconds(time_us);
@@ -53,11 +53,11 @@ class LiveFrames : public FrameSource {
 
   std::optional<Frame> next_unrecorded() {
     // First what was taken to be recorded, then what came after the fault.
-    while (const auto picture = recording_.recorder_.next_unwritten()) {
-      if (auto frame = decode(*picture->jpeg, picture->time_us)) return frame;
+    while (const auto image = recording_.recorder_.next_unwritten()) {
+      if (auto frame = decode(*image->jpeg, image->time_us)) return frame;
     }
-    while (const auto picture = recording_.next_unrecorded()) {
-      if (auto frame = decode(*picture->jpeg, picture->time_us)) return frame;
+    while (const auto image = recording_.next_unrecorded()) {
+      if (auto frame = decode(*image->jpeg, image->time_us)) return frame;
     }
     return std::nullopt;
   }
@@ -110,7 +110,7 @@ void CameraRecording::record(const std::stop_token& stop) {
                                        "what was recorded is kept");
   }
   recorder_.close();
-  report_disk_fault();  // found after the last picture
+  report_disk_fault();  // found after the last image
   {
     const std::lock_guard lock(mutex_);
     status_.camera = camera_->counts();
@@ -138,16 +138,16 @@ void CameraRecording::take(const CameraBuffer& buffer) {
   if (!first_s_) first_s_ = buffer.time_s;
   // Time never goes back, even if a device that came back says so.
   last_us_ = std::max(last_us_, std::int64_t{std::llround((buffer.time_s - *first_s_) * 1e6)});
-  const LivePicture picture{std::make_shared<const std::vector<std::uint8_t>>(std::move(jpeg)),
-                            last_us_, buffer.sequence};
-  const bool is_recorded = recorder_.add(picture);
+  const LiveImage image{std::make_shared<const std::vector<std::uint8_t>>(std::move(jpeg)),
+                        last_us_, buffer.sequence};
+  const bool is_recorded = recorder_.add(image);
   const bool has_fault = report_disk_fault();
 
   const std::lock_guard lock(mutex_);
   ++status_.taken;
   status_.camera = camera_->counts();
   if (has_fault && !is_recorded) {
-    unrecorded_.push_back(picture);
+    unrecorded_.push_back(image);
     if (unrecorded_.size() > kMostUnrecorded) unrecorded_.pop_front();
     has_unrecorded_.notify_all();
   } else if (!is_recorded) {
@@ -163,13 +163,13 @@ bool CameraRecording::report_disk_fault() {
   return true;
 }
 
-std::optional<LivePicture> CameraRecording::next_unrecorded() {
+std::optional<LiveImage> CameraRecording::next_unrecorded() {
   std::unique_lock lock(mutex_);
   has_unrecorded_.wait(lock, [this] { return !unrecorded_.empty() || status_.has_ended; });
   if (unrecorded_.empty()) return std::nullopt;
-  LivePicture picture = std::move(unrecorded_.front());
+  LiveImage image = std::move(unrecorded_.front());
   unrecorded_.pop_front();
-  return picture;
+  return image;
 }
 
 }  // namespace sheen::capture

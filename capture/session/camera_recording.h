@@ -20,18 +20,18 @@ namespace sheen::capture {
 /// When a recording ends by itself, and who hears of a disk that is full. Both functions are called
 /// on the recording's thread and must not wait; they may be empty.
 struct RecordingTerms {
-  std::optional<int> frames = {};      ///< ends after this many pictures, >= 1
-  std::optional<double> seconds = {};  ///< ends this long after the first picture, > 0
+  std::optional<int> frames = {};      ///< ends after this many images, >= 1
+  std::optional<double> seconds = {};  ///< ends this long after the first image, > 0
   std::function<bool()> is_enough = {};
   std::function<void(const core::Error&)> on_disk_fault = {};
 };
 
 /// How a recording stands.
 struct RecordingStatus {
-  int taken = 0;       ///< pictures the camera delivered
+  int taken = 0;       ///< images the camera delivered
   int recorded = 0;    ///< of these, in the file
   int dropped = 0;     ///< of these, lost because the disk was too slow
-  int unreadable = 0;  ///< raw pictures with too few bytes
+  int unreadable = 0;  ///< raw images with too few bytes
   CameraCounts camera;
   CameraDescription description;
   std::optional<core::Error> disk_fault;
@@ -40,7 +40,7 @@ struct RecordingStatus {
 };
 
 /// Camera -> recorder, on a thread that waits for the camera only: never for disk, fit or screen.
-/// A full disk ends the recording, not the pictures.
+/// A full disk ends the recording, not the images.
 class CameraRecording {
  public:
   /// The recorder is borrowed.
@@ -56,7 +56,8 @@ class CameraRecording {
 
   /// Every recorded frame, the way a replay reads it: from the file, as it grows. Whoever is slow
   /// catches up later. After a fault of the disk come all frames that were taken to be recorded;
-  /// those taken later go on, unrecorded, and the oldest of them are dropped. `next` waits for frames. To be destroyed before the recording.
+  /// those taken later go on, unrecorded, and the oldest of them are dropped. `next` waits for
+  /// frames. To be destroyed before the recording.
   [[nodiscard]] std::unique_ptr<FrameSource> frames();
 
   [[nodiscard]] RecordingStatus status() const;
@@ -68,20 +69,20 @@ class CameraRecording {
   void take(const CameraBuffer& buffer);
   [[nodiscard]] bool is_over() const;
   bool report_disk_fault();
-  std::optional<LivePicture> next_unrecorded();
+  std::optional<LiveImage> next_unrecorded();
 
   std::unique_ptr<Camera> camera_;
   SessionRecorder& recorder_;
   RecordingTerms terms_;
   JpegEncoder encoder_;
-  std::optional<double> first_s_;  ///< these two: of the first and last picture
+  std::optional<double> first_s_;  ///< these two: of the first and last image
   std::int64_t last_us_ = 0;
   bool has_disk_fault_ = false;
 
   mutable std::mutex mutex_;
   std::condition_variable has_unrecorded_;
   RecordingStatus status_;
-  std::deque<LivePicture> unrecorded_;
+  std::deque<LiveImage> unrecorded_;
   std::jthread thread_;  ///< last: it uses all of the above
 };
 

@@ -4,8 +4,8 @@
 #include "capture/calibration/camera_file.h"
 #include "capture/files/text_file.h"
 #include "capture/session/frame_stamps.h"
+#include "capture/source/image_check.h"
 #include "capture/source/image_folder_source.h"
-#include "capture/source/picture_check.h"
 #include "capture/source/video_source.h"
 #include "core/diagnostics/error.h"
 
@@ -190,8 +190,8 @@ void read_object(SessionReader& reader, Session& session) {
   session.board_from_object = read_transform(reader, object);
 }
 
-std::unique_ptr<FrameSource> open_pictures(const Session& session, const FrameRange& range) {
-  const PictureSize size{session.camera.width_px(), session.camera.height_px()};
+std::unique_ptr<FrameSource> open_images(const Session& session, const FrameRange& range) {
+  const ImageSize size{session.camera.width_px(), session.camera.height_px()};
   if (session.video) return open_video(*session.video, size, range, session.fps);
   return open_image_folder(session.folder, session.image_pattern.value_or(""), size, range,
                            session.fps);
@@ -234,10 +234,10 @@ std::unique_ptr<FrameSource> open_frames(const Session& session, int start,
     const int stamped = static_cast<int>(times_s.size());
     check_range(*session.stamps, range, stamped);
     range.end = std::min(end.value_or(stamped), stamped);
-    auto frames = open_pictures(session, range);
+    auto frames = open_images(session, range);
     return with_stamps(std::move(frames), std::move(times_s));
   }
-  return open_pictures(session, range);
+  return open_images(session, range);
 }
 
 }  // namespace sheen::capture

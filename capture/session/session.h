@@ -37,7 +37,7 @@ struct Session {
 Session open_session(const std::filesystem::path& folder);
 
 /// Frames [start, end) of the session in recorded order; `index` counts from the recording's first
-/// frame whatever `start` is. Throws core::Error for a missing or truncated video, a picture whose
+/// frame whatever `start` is. Throws core::Error for a missing or truncated video, an image whose
 /// size differs from camera.yaml.
 std::unique_ptr<FrameSource> open_frames(const Session& session, int start = 0,
                                          std::optional<int> end = std::nullopt);

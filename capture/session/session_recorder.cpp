@@ -60,7 +60,7 @@ void write_description(const fs::path& folder, const std::string& mesh,
   }
 }
 
-/// What a recording holds besides pictures is on the disk before the first of them.
+/// What a recording holds besides images is on the disk before the first of them.
 void flush_files(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     static_cast<void>(FileHandle::open_to_read(entry.path()).flush());
@@ -87,7 +87,7 @@ SessionRecorder::SessionRecorder(const fs::path& folder, const SessionSetup& set
   copy_part(setup.mesh, staged.path() / mesh);
   write_description(staged.path(), mesh, setup.board_from_object);
   video_.emplace(staged.path() / "frames.avi",
-                 PictureSize{setup.camera.width_px(), setup.camera.height_px()}, fps);
+                 ImageSize{setup.camera.width_px(), setup.camera.height_px()}, fps);
   stamps_ = FileHandle::create(staged.path() / "frames.csv");
   const std::string heading = stamps_heading();
   if (stamps_->write_at(0, bytes_of(heading)) != 0) {
@@ -106,13 +106,13 @@ SessionRecorder::~SessionRecorder() {
   close();
 }
 
-bool SessionRecorder::add(LivePicture picture) {
+bool SessionRecorder::add(LiveImage image) {
   {
     const std::lock_guard lock(mutex_);
-    const std::size_t bytes = picture.jpeg->size();
+    const std::size_t bytes = image.jpeg->size();
     if (fault_ || is_closing_ || waiting_bytes_ + bytes > kMostWaitingBytes) return false;
     waiting_bytes_ += bytes;
-    waiting_.push_back(std::move(picture));
+    waiting_.push_back(std::move(image));
   }
   has_news_.notify_all();
   return true;
@@ -132,13 +132,13 @@ std::optional<std::int64_t> SessionRecorder::wait_for(int index) const {
   return std::nullopt;
 }
 
-std::optional<LivePicture> SessionRecorder::next_unwritten() {
+std::optional<LiveImage> SessionRecorder::next_unwritten() {
   const std::lock_guard lock(mutex_);
   if (!fault_ || is_writing_ || waiting_.empty()) return std::nullopt;
-  LivePicture picture = std::move(waiting_.front());
+  LiveImage image = std::move(waiting_.front());
   waiting_.pop_front();
-  waiting_bytes_ -= picture.jpeg->size();
-  return picture;
+  waiting_bytes_ -= image.jpeg->size();
+  return image;
 }
 
 int SessionRecorder::written() const {
@@ -159,24 +159,24 @@ void SessionRecorder::close() {
 
 void SessionRecorder::write_all() {
   while (true) {
-    LivePicture picture;
+    LiveImage image;
     {
       std::unique_lock lock(mutex_);
       has_news_.wait(lock, [&] { return !waiting_.empty() || is_closing_ || fault_; });
       if (waiting_.empty() || fault_) break;
-      picture = std::move(waiting_.front());
+      image = std::move(waiting_.front());
       waiting_.pop_front();
       is_writing_ = true;
     }
-    const bool is_written = write(picture);
+    const bool is_written = write(image);
     {
       const std::lock_guard lock(mutex_);
       is_writing_ = false;
       if (is_written) {
-        waiting_bytes_ -= picture.jpeg->size();
-        written_us_.push_back(picture.time_us);
+        waiting_bytes_ -= image.jpeg->size();
+        written_us_.push_back(image.time_us);
       } else {
-        waiting_.push_front(std::move(picture));  // it was taken, so somebody gets it
+        waiting_.push_front(std::move(image));  // it was taken, so somebody gets it
       }
     }
     has_news_.notify_all();
@@ -192,13 +192,13 @@ void SessionRecorder::write_all() {
   has_news_.notify_all();
 }
 
-bool SessionRecorder::write(const LivePicture& picture) {
-  if (const int status = video_->append(*picture.jpeg); status != 0) {
+bool SessionRecorder::write(const LiveImage& image) {
+  if (const int status = video_->append(*image.jpeg); status != 0) {
     set_fault(status);
     return false;
   }
-  // A picture counts once its stamp is there.
-  const std::string line = stamp_line(written(), picture.time_us, picture.sequence);
+  // An image counts once its stamp is there.
+  const std::string line = stamp_line(written(), image.time_us, image.sequence);
   if (const int status = stamps_->write_at(stamps_end_, bytes_of(line)); status != 0) {
     stamps_->truncate(stamps_end_);
     set_fault(status);
@@ -217,7 +217,7 @@ void SessionRecorder::flush_until_stopped(const std::stop_token& stop) {
 }
 
 void SessionRecorder::flush() {
-  // Pictures before stamps: a stamp without its picture would say nothing.
+  // Images before stamps: a stamp without its image would say nothing.
   if (const int status = video_->flush(); status != 0) return set_fault(status);
   if (const int status = stamps_->flush(); status != 0) set_fault(status);
 }

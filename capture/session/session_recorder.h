@@ -27,16 +27,16 @@ struct SessionSetup {
   Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();
 };
 
-/// A picture on its way from the camera: shared, since disk, fit and screen take it at their pace.
-struct LivePicture {
+/// An image on its way from the camera: shared, since disk, fit and screen take it at their pace.
+struct LiveImage {
   std::shared_ptr<const std::vector<std::uint8_t>> jpeg;
-  std::int64_t time_us = 0;    ///< since the first picture
+  std::int64_t time_us = 0;    ///< since the first image
   std::uint32_t sequence = 0;  ///< the camera's own count
 };
 
-/// Records a session that survives a crash. The folder opens as a session before the first picture;
-/// pictures and their time stamps are appended as they come and flushed to the disk twice a second.
-/// After a crash all but the last second is there. Whoever adds pictures never waits for the disk:
+/// Records a session that survives a crash. The folder opens as a session before the first image;
+/// images and their time stamps are appended as they come and flushed to the disk twice a second.
+/// After a crash all but the last second is there. Whoever adds images never waits for the disk:
 /// one thread writes, another flushes.
 class SessionRecorder {
  public:
@@ -49,22 +49,22 @@ class SessionRecorder {
   SessionRecorder(SessionRecorder&&) = delete;
   SessionRecorder& operator=(SessionRecorder&&) = delete;
 
-  /// Takes a picture to be written; false when it is not recorded: after a fault or `close`, or
+  /// Takes an image to be written; false when it is not recorded: after a fault or `close`, or
   /// because the disk is so slow that too much waits already.
-  bool add(LivePicture picture);
+  bool add(LiveImage image);
 
   /// What ended the recording early, such as a full disk.
   [[nodiscard]] std::optional<core::Error> fault() const;
 
-  /// Waits until picture `index` is in the file and returns its time; nothing when it never will
+  /// Waits until image `index` is in the file and returns its time; nothing when it never will
   /// be.
   [[nodiscard]] std::optional<std::int64_t> wait_for(int index) const;
 
-  /// After a fault, once `wait_for` has nothing more: the next of the pictures that were taken but
+  /// After a fault, once `wait_for` has nothing more: the next of the images that were taken but
   /// never came to the disk, in the order of `add`; nothing when there is none.
-  [[nodiscard]] std::optional<LivePicture> next_unwritten();
+  [[nodiscard]] std::optional<LiveImage> next_unwritten();
 
-  /// Pictures in the file.
+  /// Images in the file.
   [[nodiscard]] int written() const;
 
   /// Writes what waits and completes the file; nothing can be added any more.
@@ -74,7 +74,7 @@ class SessionRecorder {
 
  private:
   void write_all();
-  [[nodiscard]] bool write(const LivePicture& picture);
+  [[nodiscard]] bool write(const LiveImage& image);
   void flush_until_stopped(const std::stop_token& stop);
   void flush();
   void set_fault(int fault);
@@ -86,10 +86,10 @@ class SessionRecorder {
 
   mutable std::mutex mutex_;
   mutable std::condition_variable has_news_;
-  std::deque<LivePicture> waiting_;
+  std::deque<LiveImage> waiting_;
   std::size_t waiting_bytes_ = 0;
-  bool is_writing_ = false;  ///< a picture is neither in `waiting_` nor in the file
-  std::vector<std::int64_t> written_us_;  ///< times of the pictures in the file
+  bool is_writing_ = false;               ///< an image is neither in `waiting_` nor in the file
+  std::vector<std::int64_t> written_us_;  ///< times of the images in the file
   std::optional<core::Error> fault_;
   bool is_closing_ = false;
   bool is_closed_ = false;

@@ -128,7 +128,7 @@ void AviReader::note_stream_format(const Chunk& chunk) {
   for (int i = 0; i < 4; ++i) header_.codec += letter(u32(start.data() + 16), i);
 }
 
-bool AviReader::is_picture(std::uint32_t name) const {
+bool AviReader::is_image(std::uint32_t name) const {
   const std::uint32_t kind = name >> 16;
   return letter(name, 0) == static_cast<char>('0' + video_stream_ / 10) &&
          letter(name, 1) == static_cast<char>('0' + video_stream_ % 10) &&
@@ -137,18 +137,18 @@ bool AviReader::is_picture(std::uint32_t name) const {
 
 bool AviReader::advance() {
   while (const auto chunk = next_chunk()) {
-    if (!is_picture(chunk->name)) continue;
+    if (!is_image(chunk->name)) continue;
     ++slot_;
     if (chunk->size == 0) continue;
-    picture_ = *chunk;
+    image_ = *chunk;
     return true;
   }
   return false;
 }
 
 std::span<const std::uint8_t> AviReader::read() {
-  bytes_.resize(picture_.size);
-  if (file_.read_at(picture_.begin, bytes_) != bytes_.size()) bytes_.clear();
+  bytes_.resize(image_.size);
+  if (file_.read_at(image_.begin, bytes_) != bytes_.size()) bytes_.clear();
   return bytes_;
 }
 

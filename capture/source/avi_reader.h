@@ -13,34 +13,34 @@
 
 namespace sheen::capture {
 
-/// What the headers of an AVI file say about its pictures.
+/// What the headers of an AVI file say about its images.
 struct AviHeader {
   std::string codec;  ///< four letters, such as MJPG
-  PictureSize size;
+  ImageSize size;
   double fps = 0;             ///< > 0
   std::optional<int> frames;  ///< nothing where the recording was never closed
 };
 
-/// The pictures' bytes of an AVI file, in order. Walks the chunks (AVI 1.0, OpenDML segments) and
+/// The images' bytes of an AVI file, in order. Walks the chunks (AVI 1.0, OpenDML segments) and
 /// believes no index and no list's size: what is there of an unfinished recording is found. All
 /// sizes are checked against the file.
 class AviReader {
  public:
-  /// Nothing when the file is no AVI file with pictures. Throws core::Error (bad_input) when it
+  /// Nothing when the file is no AVI file with images. Throws core::Error (bad_input) when it
   /// cannot be read.
   static std::optional<AviReader> open(const std::filesystem::path& path);
 
   [[nodiscard]] const AviHeader& header() const { return header_; }
 
-  /// Goes to the next picture; false at the end of the file or where it is cut or damaged. Of a
+  /// Goes to the next image; false at the end of the file or where it is cut or damaged. Of a
   /// growing file it may be called again later.
   bool advance();
 
-  /// Bytes of the picture gone to, valid until the next call of a member; empty when they cannot be
+  /// Bytes of the image gone to, valid until the next call of a member; empty when they cannot be
   /// read.
   [[nodiscard]] std::span<const std::uint8_t> read();
 
-  /// Place of the picture in time, in frames: a place with an empty chunk has no picture.
+  /// Place of the image in time, in frames: a place with an empty chunk has no image.
   [[nodiscard]] int slot() const { return slot_; }
 
  private:
@@ -59,16 +59,16 @@ class AviReader {
   std::vector<std::uint8_t> read_start(const Chunk& chunk, std::size_t bytes) const;
   void note_stream_header(const Chunk& chunk);
   void note_stream_format(const Chunk& chunk);
-  [[nodiscard]] bool is_picture(std::uint32_t name) const;
+  [[nodiscard]] bool is_image(std::uint32_t name) const;
 
   FileHandle file_;
   std::uint64_t file_size_;
   std::uint64_t next_ = 0;  ///< where the next chunk begins
   AviHeader header_;
   int streams_ = 0;        ///< stream headers met
-  int video_stream_ = -1;  ///< the first with pictures
+  int video_stream_ = -1;  ///< the first with images
   int slot_ = -1;
-  Chunk picture_;
+  Chunk image_;
   std::vector<std::uint8_t> bytes_;
 };
 

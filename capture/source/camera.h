@@ -9,18 +9,18 @@
 
 namespace sheen::capture {
 
-/// How a camera packs a picture: JPEG, 4:2:2 as Y U Y V, or a plane of Y and one of U V at 4:2:0.
+/// How a camera packs an image: JPEG, 4:2:2 as Y U Y V, or a plane of Y and one of U V at 4:2:0.
 enum class PixelFormat { mjpeg, yuyv, nv12 };
 
-/// One picture as the camera's own bytes.
+/// One image as the camera's own bytes.
 struct CameraBuffer {
   PixelFormat format = PixelFormat::mjpeg;
-  std::span<const std::uint8_t> bytes;  ///< valid until the camera is asked for the next picture
+  std::span<const std::uint8_t> bytes;  ///< valid until the camera is asked for the next image
   int width_px = 0;
   int height_px = 0;
   int bytes_per_line = 0;      ///< of raw formats, padding included; 0: none
   double time_s = 0;           ///< of the exposure, on the kernel's monotonic clock
-  std::uint32_t sequence = 0;  ///< the driver's count, pictures it lost included
+  std::uint32_t sequence = 0;  ///< the driver's count, images it lost included
 };
 
 /// What a camera was set to.
@@ -36,16 +36,16 @@ struct CameraDescription {
 /// What went wrong on the way and was got over.
 struct CameraCounts {
   int lost = 0;           ///< gaps in the driver's count
-  int damaged = 0;        ///< pictures that the driver marked as faulty, skipped
+  int damaged = 0;        ///< images that the driver marked as faulty, skipped
   int reconnections = 0;  ///< times the device went away and came back
 };
 
-/// A device that delivers pictures at its own pace. Used from one thread.
+/// A device that delivers images at its own pace. Used from one thread.
 class Camera {
  public:
   virtual ~Camera() = default;
 
-  /// The next picture; nothing when none came within `timeout`. Throws core::Error (run_failed)
+  /// The next image; nothing when none came within `timeout`. Throws core::Error (run_failed)
   /// when the device is gone and does not come back.
   virtual std::optional<CameraBuffer> next(std::chrono::milliseconds timeout) = 0;
 

@@ -5,7 +5,7 @@
 
 namespace sheen::capture {
 
-/// One picture as it left the camera.
+/// One image as it left the camera.
 struct Frame {
   cv::Mat image;      ///< CV_8UC3, BGR, distorted as the lens made it
   double time_s = 0;  ///< since the first frame

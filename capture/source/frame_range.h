@@ -11,12 +11,12 @@ struct FrameRange {
   std::optional<int> end;  ///< one past the last; without a value to the end of the recording
 };
 
-/// What every picture of a recording must look like.
-struct PictureSize {
+/// What every image of a recording must look like.
+struct ImageSize {
   int width_px = 0;
   int height_px = 0;
 
-  bool operator==(const PictureSize&) const = default;
+  bool operator==(const ImageSize&) const = default;
 };
 
 }  // namespace sheen::capture

@@ -7,12 +7,12 @@
 
 namespace sheen::capture {
 
-/// Pictures in the order they were taken: a video file, a folder of stills, later a camera.
+/// Images in the order they were taken: a video file, a folder of stills, later a camera.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
-  /// The next picture, or nothing at the end. Throws core::Error when the source is broken.
+  /// The next image, or nothing at the end. Throws core::Error when the source is broken.
   virtual std::optional<Frame> next() = 0;
 
   /// Number of frames when the source knows it.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "capture/source/image_folder_source.h"
 
-#include "capture/source/picture_check.h"
+#include "capture/source/image_check.h"
 #include "core/diagnostics/error.h"
 
 #include <opencv2/imgcodecs.hpp>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMaxDigits = 9;
 
-/// Numbers of all pictures that the pattern names.
+/// Numbers of all images that the pattern names.
 std::set<int> find_numbers(const std::filesystem::path& folder, const NumberedName& name) {
   std::set<int> numbers;
   std::error_code fault;
@@ -31,14 +31,14 @@ std::set<int> find_numbers(const std::filesystem::path& folder, const NumberedNa
 
 class ImageFolderSource : public FrameSource {
  public:
-  ImageFolderSource(std::filesystem::path session_folder, NumberedName name, PictureSize size,
+  ImageFolderSource(std::filesystem::path session_folder, NumberedName name, ImageSize size,
                     FrameRange range, double fps)
       : session_folder_(std::move(session_folder)),
         name_(std::move(name)),
         size_(size),
         range_(range),
         fps_(fps) {
-    count_pictures();
+    count_images();
     check_range(session_folder_ / name_.folder(), range_, count_);
     next_ = range_.start;
     end_ = std::min(count_, range_.end.value_or(count_));
@@ -53,20 +53,20 @@ class ImageFolderSource : public FrameSource {
   [[nodiscard]] std::optional<int> frame_count() const override { return end_ - range_.start; }
 
  private:
-  void count_pictures() {
+  void count_images() {
     const auto folder = session_folder_ / name_.folder();
     const std::set<int> numbers = find_numbers(folder, name_);
     if (numbers.empty() || *numbers.begin() > 1) {
-      throw core::bad_input(session_folder_ / name_.at(0), "there is no first picture",
-                            "number the pictures from 0 or 1");
+      throw core::bad_input(session_folder_ / name_.at(0), "there is no first image",
+                            "number the images from 0 or 1");
     }
     first_ = *numbers.begin();
     count_ = static_cast<int>(numbers.size());
     if (*numbers.rbegin() - first_ == count_ - 1) return;
     int missing = first_;
     while (numbers.contains(missing)) ++missing;
-    throw core::bad_input(session_folder_ / name_.at(missing), "this picture is missing",
-                          "number the pictures without gaps");
+    throw core::bad_input(session_folder_ / name_.at(missing), "this image is missing",
+                          "number the images without gaps");
   }
 
   std::optional<Frame> read() {
@@ -79,19 +79,19 @@ class ImageFolderSource : public FrameSource {
       image.release();  // OpenCV throws for absurd sizes and returns nothing for other faults
     }
     if (image.empty()) {
-      throw core::bad_input(path, "cannot be read as a picture", "check that it is complete");
+      throw core::bad_input(path, "cannot be read as an image", "check that it is complete");
     }
-    check_picture_size(path, {image.cols, image.rows}, size_);
+    check_image_size(path, {image.cols, image.rows}, size_);
     const int index = next_++;
     return Frame{std::move(image), index / fps_, index};
   }
 
   std::filesystem::path session_folder_;
   NumberedName name_;
-  PictureSize size_;
+  ImageSize size_;
   FrameRange range_;
   double fps_;
-  int first_ = 0;  // number of the first picture
+  int first_ = 0;  // number of the first image
   int count_ = 0;
   int next_ = 0;
   int end_ = 0;
@@ -147,7 +147,7 @@ std::optional<int> NumberedName::number_in(const std::string& file_name) const {
 }
 
 std::unique_ptr<FrameSource> open_image_folder(const std::filesystem::path& session_folder,
-                                               const std::string& pattern, const PictureSize& size,
+                                               const std::string& pattern, const ImageSize& size,
                                                const FrameRange& range, std::optional<double> fps) {
   const auto name = NumberedName::parse(pattern);
   if (!name) {

@@ -28,12 +28,12 @@ class NumberedName {
   std::size_t digits_ = 0;
 };
 
-/// Pictures of a folder as frames, in the order of their numbers; the first number is 0 or 1. Times
-/// are index / `fps`, or one second per picture. Throws core::Error (bad_input): no picture, a gap
-/// in the numbers, a picture that cannot be read or has another size (the first one is read before
+/// Images of a folder as frames, in the order of their numbers; the first number is 0 or 1. Times
+/// are index / `fps`, or one second per image. Throws core::Error (bad_input): no image, a gap
+/// in the numbers, an image that cannot be read or has another size (the first one is read before
 /// this returns).
 std::unique_ptr<FrameSource> open_image_folder(const std::filesystem::path& session_folder,
-                                               const std::string& pattern, const PictureSize& size,
+                                               const std::string& pattern, const ImageSize& size,
                                                const FrameRange& range, std::optional<double> fps);
 
 }  // namespace sheen::capture

@@ -14,14 +14,14 @@ struct Destroy {
 };
 using Decompressor = std::unique_ptr<void, Destroy>;
 
-/// One for each picture (150 ns): a decompressor remembers tables from picture to picture, and the
+/// One for each image (150 ns): a decompressor remembers tables from image to image, and the
 /// same bytes must give the same pixels wherever reading starts.
 Decompressor make_decompressor() {
   return Decompressor(tjInitDecompress());
 }
 
-std::optional<PictureSize> read_size(void* codec, std::span<const std::uint8_t> jpeg) {
-  PictureSize size;
+std::optional<ImageSize> read_size(void* codec, std::span<const std::uint8_t> jpeg) {
+  ImageSize size;
   int subsampling = 0, colour_space = 0;
   if (codec == nullptr || tjDecompressHeader3(codec, jpeg.data(), jpeg.size(), &size.width_px,
                                               &size.height_px, &subsampling, &colour_space) != 0) {
@@ -30,18 +30,18 @@ std::optional<PictureSize> read_size(void* codec, std::span<const std::uint8_t> 
   return size;
 }
 
-/// Cameras pad their pictures; only missing or unreadable picture data is damage.
+/// Cameras pad their images; only missing or unreadable image data is damage.
 bool is_harmless(std::string_view warning) {
   return warning.find("extraneous bytes") != std::string_view::npos;
 }
 
 }  // namespace
 
-std::optional<PictureSize> jpeg_size(std::span<const std::uint8_t> jpeg) {
+std::optional<ImageSize> jpeg_size(std::span<const std::uint8_t> jpeg) {
   return read_size(make_decompressor().get(), jpeg);
 }
 
-bool decode_jpeg(std::span<const std::uint8_t> jpeg, const PictureSize& size, cv::Mat& bgr) {
+bool decode_jpeg(std::span<const std::uint8_t> jpeg, const ImageSize& size, cv::Mat& bgr) {
   const Decompressor codec = make_decompressor();
   const auto stated = read_size(codec.get(), jpeg);
   if (stated != size) return false;

@@ -9,14 +9,14 @@
 
 namespace sheen::capture {
 
-/// Packs raw pictures of a camera as JPEG of quality 95, chroma as finely sampled as the camera
+/// Packs raw images of a camera as JPEG of quality 95, chroma as finely sampled as the camera
 /// did. Luma and chroma are taken as ITU-R BT.601 in limited range, what V4L2 says of cameras, and
 /// become JPEG's full range. A few ms of CPU at 1280x720.
 class JpegEncoder {
  public:
   JpegEncoder();
 
-  /// The picture as JPEG; empty when `raw` is a JPEG itself or holds fewer bytes than its size
+  /// The image as JPEG; empty when `raw` is a JPEG itself or holds fewer bytes than its size
   /// asks.
   [[nodiscard]] std::vector<std::uint8_t> encode(const CameraBuffer& raw);
 

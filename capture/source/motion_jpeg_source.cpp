@@ -2,8 +2,8 @@
 #include "capture/source/motion_jpeg_source.h"
 
 #include "capture/source/avi_reader.h"
+#include "capture/source/image_check.h"
 #include "capture/source/jpeg_decoder.h"
-#include "capture/source/picture_check.h"
 #include "capture/source/recording_end.h"
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 namespace sheen::capture {
 namespace {
 
-/// Interlaced recordings hold two half pictures each, which FFmpeg can join.
-bool has_whole_pictures(AviReader& reader) {
+/// Interlaced recordings hold two half images each, which FFmpeg can join.
+bool has_whole_images(AviReader& reader) {
   while (reader.advance()) {
     if (const auto stated = jpeg_size(reader.read())) return *stated == reader.header().size;
   }
@@ -22,7 +22,7 @@ bool has_whole_pictures(AviReader& reader) {
 
 class MotionJpegSource : public FrameSource {
  public:
-  MotionJpegSource(std::filesystem::path path, AviReader reader, const PictureSize& size,
+  MotionJpegSource(std::filesystem::path path, AviReader reader, const ImageSize& size,
                    const FrameRange& range, std::optional<double> fps)
       : path_(std::move(path)), reader_(std::move(reader)), size_(size), range_(range), fps_(fps) {
     check_range(path_, range_, promised());
@@ -66,7 +66,7 @@ class MotionJpegSource : public FrameSource {
       const auto jpeg = reader_.read();
       const auto stated = jpeg_size(jpeg);
       if (!stated) continue;
-      check_picture_size(path_, *stated, size_);
+      check_image_size(path_, *stated, size_);
       Frame frame;
       if (!decode_jpeg(jpeg, size_, frame.image)) continue;
       frame.index = read_ - 1;
@@ -79,10 +79,10 @@ class MotionJpegSource : public FrameSource {
 
   std::filesystem::path path_;
   AviReader reader_;
-  PictureSize size_;
+  ImageSize size_;
   FrameRange range_;
   std::optional<double> fps_;
-  int read_ = 0;  ///< pictures gone past, damaged ones included
+  int read_ = 0;  ///< images gone past, damaged ones included
   int first_slot_ = 0;
   std::optional<Frame> waiting_;
 };
@@ -90,11 +90,11 @@ class MotionJpegSource : public FrameSource {
 }  // namespace
 
 std::unique_ptr<FrameSource> open_motion_jpeg(const std::filesystem::path& path,
-                                              const PictureSize& size, const FrameRange& range,
+                                              const ImageSize& size, const FrameRange& range,
                                               std::optional<double> fps) {
   auto reader = AviReader::open(path);
-  if (!reader || reader->header().codec != "MJPG" || !has_whole_pictures(*reader)) return nullptr;
-  reader = AviReader::open(path);  // again from its first picture
+  if (!reader || reader->header().codec != "MJPG" || !has_whole_images(*reader)) return nullptr;
+  reader = AviReader::open(path);  // again from its first image
   return std::make_unique<MotionJpegSource>(path, std::move(*reader), size, range, fps);
 }
 

@@ -10,11 +10,11 @@
 
 namespace sheen::capture {
 
-/// Frames of an AVI file of JPEG pictures, decoded by libjpeg-turbo. Damaged pictures, which
+/// Frames of an AVI file of JPEG images, decoded by libjpeg-turbo. Damaged images, which
 /// cameras deliver now and then, are left out; the indices of the others count them. Nothing when
 /// the file is of another kind. Otherwise as `open_video`.
 std::unique_ptr<FrameSource> open_motion_jpeg(const std::filesystem::path& path,
-                                              const PictureSize& size, const FrameRange& range,
+                                              const ImageSize& size, const FrameRange& range,
                                               std::optional<double> fps);
 
 }  // namespace sheen::capture

@@ -11,7 +11,7 @@
 namespace sheen::capture {
 namespace {
 
-constexpr std::size_t kMostWaiting = 3;  // pictures in full size: enough to even out the decoder
+constexpr std::size_t kMostWaiting = 3;  // images in full size: enough to even out the decoder
 
 class ReadAheadSource : public FrameSource {
  public:

@@ -14,7 +14,7 @@ using namespace std::chrono_literals;
 /// Between two attempts to open a camera that is away.
 constexpr auto attempt_interval = 200ms;
 
-/// Pictures exposed before the controls changed are on their way for a moment.
+/// Images exposed before the controls changed are on their way for a moment.
 constexpr double after_lock_s = 0.2;
 
 /// Where neither the list of modes nor the driver gives a rate.
@@ -104,25 +104,25 @@ std::optional<CameraBuffer> V4l2Camera::next(std::chrono::milliseconds timeout) 
 
 std::optional<CameraBuffer> V4l2Camera::receive(Time deadline) {
   const Time silent_at = last_heard_ + seconds(options_.silence_s);
-  std::optional<V4l2Picture> picture;
+  std::optional<V4l2Image> image;
   try {
     const Time now = system_.now();
-    picture = connection_->stream.next(until(std::min(deadline, silent_at), now));
+    image = connection_->stream.next(until(std::min(deadline, silent_at), now));
   } catch (const V4l2Error& error) {
     disconnect(error.fault());
     return std::nullopt;
   }
-  if (picture) return deliver(*picture);
+  if (image) return deliver(*image);
   if (system_.now() >= silent_at)
-    disconnect(fmt::format("no picture came for {:g} s", options_.silence_s));
+    disconnect(fmt::format("no image came for {:g} s", options_.silence_s));
   return std::nullopt;
 }
 
-std::optional<CameraBuffer> V4l2Camera::deliver(const V4l2Picture& picture) {
+std::optional<CameraBuffer> V4l2Camera::deliver(const V4l2Image& image) {
   last_heard_ = system_.now();
-  const PictureOrder::Place place = order_.place(picture.sequence);
+  const ImageOrder::Place place = order_.place(image.sequence);
   counts_.lost += place.lost;
-  if (picture.damaged) {
+  if (image.damaged) {
     ++counts_.damaged;
     return std::nullopt;
   }
@@ -132,11 +132,11 @@ std::optional<CameraBuffer> V4l2Camera::deliver(const V4l2Picture& picture) {
   }
   CameraBuffer buffer;
   buffer.format = mode_.format;
-  buffer.bytes = picture.bytes;
+  buffer.bytes = image.bytes;
   buffer.width_px = mode_.size.width_px;
   buffer.height_px = mode_.size.height_px;
   buffer.bytes_per_line = connection_->active.bytes_per_line;
-  buffer.time_s = order_.stamp_s(picture.stamp, last_heard_);
+  buffer.time_s = order_.stamp_s(image.stamp, last_heard_);
   buffer.sequence = place.sequence;
   return buffer;
 }

@@ -3,8 +3,8 @@
 
 #include "capture/source/camera.h"
 #include "capture/source/v4l2_controls.h"
+#include "capture/source/v4l2_image_order.h"
 #include "capture/source/v4l2_modes.h"
-#include "capture/source/v4l2_picture_order.h"
 #include "capture/source/v4l2_stream.h"
 
 #include <chrono>
@@ -22,14 +22,14 @@ struct V4l2CameraOptions {
   ModeWish mode;
   std::vector<ControlValue> controls;  ///< set before the automatics settle
   bool lock_automatics = true;         ///< exposure, gain, white balance and focus, once settled
-  double settle_s = 1.5;    ///< >= 0, time for the automatics; their pictures are dropped
-  double silence_s = 5;     ///< > 0, without a picture a stream counts as broken
-  double reconnect_s = 30;  ///< >= 0, how long a camera that failed may stay away
+  double settle_s = 1.5;               ///< >= 0, time for the automatics; their images are dropped
+  double silence_s = 5;                ///< > 0, without an image a stream counts as broken
+  double reconnect_s = 30;             ///< >= 0, how long a camera that failed may stay away
 };
 
 /// A camera of the Linux kernel: mapped streaming of MJPEG, YUYV or NV12. A stream that breaks, or
 /// a camera that is unplugged, is opened again with the same mode and control values when it is
-/// back, and its pictures are numbered on.
+/// back, and its images are numbered on.
 class V4l2Camera : public Camera {
  public:
   /// Opens the device, lets the automatics settle and locks them: takes `settle_s`. Throws
@@ -60,7 +60,7 @@ class V4l2Camera : public Camera {
   void reconnect(Time deadline);
   void disconnect(const std::string& fault);
   [[nodiscard]] std::optional<CameraBuffer> receive(Time deadline);
-  [[nodiscard]] std::optional<CameraBuffer> deliver(const V4l2Picture& picture);
+  [[nodiscard]] std::optional<CameraBuffer> deliver(const V4l2Image& image);
   void check_patience() const;
 
   V4l2System& system_;
@@ -71,9 +71,9 @@ class V4l2Camera : public Camera {
   CameraDescription description_;
   CameraCounts counts_;
   std::vector<ControlValue> locked_;
-  PictureOrder order_;
-  Time last_heard_{};                  ///< of the last picture or the last start
-  std::optional<Time> failing_since_;  ///< first fault after the last good picture
+  ImageOrder order_;
+  Time last_heard_{};                  ///< of the last image or the last start
+  std::optional<Time> failing_since_;  ///< first fault after the last good image
   Time next_attempt_{};
   std::string last_fault_;
 };

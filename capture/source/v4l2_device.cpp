@@ -97,7 +97,7 @@ void V4l2Device::identify() {
                               ? capability.device_caps
                               : capability.capabilities;
   const __u32 needed = V4L2_CAP_VIDEO_CAPTURE | V4L2_CAP_STREAMING;
-  if ((abilities & needed) != needed) throw no_camera(node_, "it does not stream pictures");
+  if ((abilities & needed) != needed) throw no_camera(node_, "it does not stream images");
 }
 
 }  // namespace sheen::capture

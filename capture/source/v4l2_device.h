@@ -21,7 +21,7 @@ class V4l2Error : public core::Error {
   std::string fault_;
 };
 
-/// An open V4L2 node that captures pictures into mapped memory. Move-only owner of the descriptor.
+/// An open V4L2 node that captures images into mapped memory. Move-only owner of the descriptor.
 class V4l2Device {
  public:
   /// Throws V4l2Error: bad_input when there is no such node or it is no camera, run_failed when it

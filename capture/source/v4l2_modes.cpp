@@ -12,13 +12,12 @@
 namespace sheen::capture {
 namespace {
 
-constexpr PictureSize preferred_size{1280, 720};
+constexpr ImageSize preferred_size{1280, 720};
 
 /// Tried where a driver gives a range of sizes instead of a list.
-constexpr std::array common_sizes{PictureSize{320, 240},   PictureSize{640, 480},
-                                  PictureSize{800, 600},   PictureSize{1280, 720},
-                                  PictureSize{1280, 960},  PictureSize{1920, 1080},
-                                  PictureSize{2560, 1440}, PictureSize{3840, 2160}};
+constexpr std::array common_sizes{
+    ImageSize{320, 240},  ImageSize{640, 480},   ImageSize{800, 600},   ImageSize{1280, 720},
+    ImageSize{1280, 960}, ImageSize{1920, 1080}, ImageSize{2560, 1440}, ImageSize{3840, 2160}};
 
 /// A driver that never says "that was the last" must not hold the program.
 constexpr __u32 most_entries = 256;
@@ -34,8 +33,8 @@ bool in_range(__u32 value, __u32 smallest, __u32 largest, __u32 step) {
   return value >= smallest && value <= largest && (step <= 1 || (value - smallest) % step == 0);
 }
 
-std::vector<PictureSize> sizes(const V4l2Device& device, __u32 pixel_format) {
-  std::vector<PictureSize> found;
+std::vector<ImageSize> sizes(const V4l2Device& device, __u32 pixel_format) {
+  std::vector<ImageSize> found;
   for (__u32 index = 0; index < most_entries; ++index) {
     v4l2_frmsizeenum entry{};
     entry.index = index;
@@ -46,7 +45,7 @@ std::vector<PictureSize> sizes(const V4l2Device& device, __u32 pixel_format) {
           {static_cast<int>(entry.discrete.width), static_cast<int>(entry.discrete.height)});
       continue;
     }
-    for (const PictureSize& size : common_sizes)
+    for (const ImageSize& size : common_sizes)
       if (in_range(static_cast<__u32>(size.width_px), entry.stepwise.min_width,
                    entry.stepwise.max_width, entry.stepwise.step_width) &&
           in_range(static_cast<__u32>(size.height_px), entry.stepwise.min_height,
@@ -54,14 +53,14 @@ std::vector<PictureSize> sizes(const V4l2Device& device, __u32 pixel_format) {
         found.push_back(size);
     break;
   }
-  std::erase_if(found, [](const PictureSize& size) {
+  std::erase_if(found, [](const ImageSize& size) {
     return size.width_px <= 0 || size.height_px <= 0 || size.width_px > 16384 ||
            size.height_px > 16384;
   });
   return found;
 }
 
-std::vector<double> rates(const V4l2Device& device, __u32 pixel_format, const PictureSize& size) {
+std::vector<double> rates(const V4l2Device& device, __u32 pixel_format, const ImageSize& size) {
   std::vector<double> found;
   for (__u32 index = 0; index < most_entries; ++index) {
     v4l2_frmivalenum entry{};
@@ -91,7 +90,7 @@ double rate_distance(double fps, const ModeWish& wish) {
   return wish.fps ? std::abs(fps - *wish.fps) : -fps;
 }
 
-double size_distance(const PictureSize& size, const ModeWish& wish) {
+double size_distance(const ImageSize& size, const ModeWish& wish) {
   if (wish.size) return 0;
   const auto off = [](int value, int preferred) {
     return std::abs(std::log(static_cast<double>(value) / preferred));
@@ -112,7 +111,7 @@ int bytes_rank(PixelFormat format) {
   return 3;
 }
 
-/// Undoes what an earlier program may have left: a part of the picture cut out or drawn smaller.
+/// Undoes what an earlier program may have left: a part of the image cut out or drawn smaller.
 /// Most cameras know nothing of this, which is as good.
 void reset_selection(const V4l2Device& device, __u32 target, __u32 whole) {
   v4l2_selection selection{};
@@ -144,7 +143,7 @@ void check_mode(const V4l2Device& device, const v4l2_pix_format& set, const Came
            set.height != static_cast<__u32>(mode.size.height_px))
     fault = std::to_string(set.width) + "x" + std::to_string(set.height);
   else if (set.field != V4L2_FIELD_NONE && set.field != V4L2_FIELD_ANY)
-    fault = "interlaced pictures";
+    fault = "interlaced images";
   else if (mode.format != PixelFormat::mjpeg && set.bytesperline > most_bytes_per_line)
     fault = "impossibly long lines";
   if (fault.empty()) return;
@@ -155,10 +154,10 @@ void check_mode(const V4l2Device& device, const v4l2_pix_format& set, const Came
                   "choose another size or format");
 }
 
-/// Where the lines of a raw picture lie. Drivers that leave the length of a line out pack tightly.
+/// Where the lines of a raw image lie. Drivers that leave the length of a line out pack tightly.
 ActiveMode with_layout(ActiveMode active, int driver_bytes_per_line) {
   if (active.mode.format == PixelFormat::mjpeg) return active;
-  const PictureSize& size = active.mode.size;
+  const ImageSize& size = active.mode.size;
   const bool planar = active.mode.format == PixelFormat::nv12;
   active.bytes_per_line =
       std::max(driver_bytes_per_line, planar ? size.width_px : 2 * size.width_px);
@@ -216,7 +215,7 @@ std::vector<CameraMode> camera_modes(const V4l2Device& device) {
     if (device.request(VIDIOC_ENUM_FMT, &entry) != 0) break;
     const auto format = pixel_format(entry.pixelformat);
     if (!format) continue;
-    for (const PictureSize& size : sizes(device, entry.pixelformat))
+    for (const ImageSize& size : sizes(device, entry.pixelformat))
       for (const double fps : rates(device, entry.pixelformat, size)) {
         const CameraMode mode{*format, size, fps};
         if (std::find(modes.begin(), modes.end(), mode) == modes.end()) modes.push_back(mode);
@@ -249,7 +248,7 @@ ActiveMode set_mode(const V4l2Device& device, const CameraMode& mode) {
   format.fmt.pix.pixelformat = fourcc(mode.format);
   format.fmt.pix.field = V4L2_FIELD_NONE;
   reset_selection(device, V4L2_SEL_TGT_CROP, V4L2_SEL_TGT_CROP_DEFAULT);
-  device.require(VIDIOC_S_FMT, &format, "setting the picture format");
+  device.require(VIDIOC_S_FMT, &format, "setting the image format");
   reset_selection(device, V4L2_SEL_TGT_COMPOSE, V4L2_SEL_TGT_COMPOSE_DEFAULT);
   check_mode(device, format.fmt.pix, mode);
 

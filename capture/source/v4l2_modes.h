@@ -16,7 +16,7 @@ namespace sheen::capture {
 /// One way in which a camera can work.
 struct CameraMode {
   PixelFormat format = PixelFormat::mjpeg;
-  PictureSize size;
+  ImageSize size;
   double fps = 0;  ///< 0 where the driver does not say
 
   friend bool operator==(const CameraMode& a, const CameraMode& b) {
@@ -28,8 +28,8 @@ struct CameraMode {
 /// What the user asks for; what is left open is chosen.
 struct ModeWish {
   std::optional<PixelFormat> format;
-  std::optional<PictureSize> size;  ///< else 1280x720 or the nearest to it
-  std::optional<double> fps;        ///< > 0; else the largest
+  std::optional<ImageSize> size;  ///< else 1280x720 or the nearest to it
+  std::optional<double> fps;      ///< > 0; else the largest
 };
 
 /// The kernel's code of a format, and back; nothing for formats that are not read here.
@@ -51,7 +51,7 @@ struct ModeWish {
 struct ActiveMode {
   CameraMode mode;              ///< fps as the driver reports it, 0 when it does not say
   int bytes_per_line = 0;       ///< of raw formats; 0 for MJPEG
-  std::size_t least_bytes = 0;  ///< of a whole picture; 0 for MJPEG
+  std::size_t least_bytes = 0;  ///< of a whole image; 0 for MJPEG
 };
 
 /// Sets the mode. Throws V4l2Error when the driver refuses or sets something else.

@@ -9,7 +9,7 @@
 namespace sheen::capture {
 namespace {
 
-/// At 60 pictures a second a reader may be late by a tenth of a second.
+/// At 60 images a second a reader may be late by a tenth of a second.
 constexpr __u32 wanted_buffers = 8;
 /// One with the caller, one that is being filled.
 constexpr __u32 fewest_buffers = 2;
@@ -31,7 +31,7 @@ v4l2_requestbuffers buffer_request(__u32 count) {
   return request;
 }
 
-/// Zero, which no picture has, for a time that no machine has run.
+/// Zero, which no image has, for a time that no machine has run.
 std::chrono::nanoseconds duration(const timeval& time) {
   constexpr time_t century_s = 3'155'760'000;
   if (time.tv_sec < 0 || time.tv_sec > century_s || time.tv_usec < 0 || time.tv_usec >= 1'000'000)
@@ -77,22 +77,22 @@ V4l2Stream::~V4l2Stream() {
 
 void V4l2Stream::map_buffers() {
   v4l2_requestbuffers request = buffer_request(wanted_buffers);
-  device_.require(VIDIOC_REQBUFS, &request, "reserving memory for pictures");
+  device_.require(VIDIOC_REQBUFS, &request, "reserving memory for images");
   if (request.count < fewest_buffers || request.count > most_buffers)
-    throw device_fault(device_.node(), "reserving memory for pictures", ENOMEM);
+    throw device_fault(device_.node(), "reserving memory for images", ENOMEM);
 
   for (__u32 index = 0; index < request.count; ++index) {
     v4l2_buffer buffer = mapped_buffer(index);
     device_.require(VIDIOC_QUERYBUF, &buffer, "asking for its memory");
     if (buffer.length == 0 || buffer.length < mode_.least_bytes)
-      throw device_fault(device_.node(), "reserving memory for whole pictures", ENOMEM);
+      throw device_fault(device_.node(), "reserving memory for whole images", ENOMEM);
     mappings_.emplace_back(device_, buffer.length, buffer.m.offset);
   }
 }
 
 void V4l2Stream::queue(std::uint32_t index) {
   v4l2_buffer buffer = mapped_buffer(index);
-  device_.require(VIDIOC_QBUF, &buffer, "giving it memory for a picture");
+  device_.require(VIDIOC_QBUF, &buffer, "giving it memory for an image");
 }
 
 bool V4l2Stream::whole(std::span<const std::uint8_t> bytes) const {
@@ -107,12 +107,12 @@ void V4l2Stream::give_back() noexcept {
   static_cast<void>(device_.request(VIDIOC_REQBUFS, &none));
 }
 
-std::optional<V4l2Picture> V4l2Stream::next(std::chrono::milliseconds timeout) {
+std::optional<V4l2Image> V4l2Stream::next(std::chrono::milliseconds timeout) {
   if (held_) queue(*std::exchange(held_, std::nullopt));
 
   // Wait; a broken stream wakes the wait, too, and dequeuing says what is wrong.
   const int ready = device_.system().poll(device_.descriptor(), timeout);
-  if (ready < 0) throw device_fault(device_.node(), "waiting for a picture", errno);
+  if (ready < 0) throw device_fault(device_.node(), "waiting for an image", errno);
   if (ready == 0) return std::nullopt;
 
   v4l2_buffer buffer = mapped_buffer(0);
@@ -122,21 +122,21 @@ std::optional<V4l2Picture> V4l2Stream::next(std::chrono::milliseconds timeout) {
     device_.system().pause(std::chrono::milliseconds(1));
     return std::nullopt;
   }
-  if (fault != 0) throw device_fault(device_.node(), "taking a picture", fault);
+  if (fault != 0) throw device_fault(device_.node(), "taking an image", fault);
   if (buffer.index >= mappings_.size())
-    throw device_fault(device_.node(), "taking a picture", EBADSLT);
+    throw device_fault(device_.node(), "taking an image", EBADSLT);
   held_ = buffer.index;
   if (std::exchange(first_is_stale_, false)) return std::nullopt;
 
   // Look at what came.
   const auto memory = mappings_[buffer.index].bytes();
   const bool fits = buffer.bytesused <= memory.size();
-  V4l2Picture picture;
-  picture.bytes = fits ? memory.first(buffer.bytesused) : memory.first(0);
-  picture.sequence = buffer.sequence;
-  picture.stamp = duration(buffer.timestamp);
-  picture.damaged = (buffer.flags & V4L2_BUF_FLAG_ERROR) != 0 || !whole(picture.bytes);
-  return picture;
+  V4l2Image image;
+  image.bytes = fits ? memory.first(buffer.bytesused) : memory.first(0);
+  image.sequence = buffer.sequence;
+  image.stamp = duration(buffer.timestamp);
+  image.damaged = (buffer.flags & V4L2_BUF_FLAG_ERROR) != 0 || !whole(image.bytes);
+  return image;
 }
 
 }  // namespace sheen::capture

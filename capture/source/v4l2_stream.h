@@ -30,8 +30,8 @@ class V4l2Mapping {
   std::span<std::uint8_t> bytes_;
 };
 
-/// One picture in the driver's memory.
-struct V4l2Picture {
+/// One image in the driver's memory.
+struct V4l2Image {
   std::span<const std::uint8_t> bytes;  ///< valid until the next call
   std::uint32_t sequence = 0;           ///< the driver's count
   std::chrono::nanoseconds stamp{};     ///< as the driver says
@@ -47,10 +47,10 @@ class V4l2Stream {
   V4l2Stream(const V4l2Stream&) = delete;
   V4l2Stream& operator=(const V4l2Stream&) = delete;
 
-  /// The next picture but the first, which may be older than the stream; nothing when none came
+  /// The next image but the first, which may be older than the stream; nothing when none came
   /// within `timeout`. Gives the memory of the previous one back. Throws V4l2Error when the stream
   /// is broken: then only the destructor may follow.
-  [[nodiscard]] std::optional<V4l2Picture> next(std::chrono::milliseconds timeout);
+  [[nodiscard]] std::optional<V4l2Image> next(std::chrono::milliseconds timeout);
 
  private:
   void map_buffers();
@@ -61,7 +61,7 @@ class V4l2Stream {
   const V4l2Device& device_;
   ActiveMode mode_;
   std::vector<V4l2Mapping> mappings_;
-  std::optional<std::uint32_t> held_;  ///< index of the picture that the caller looks at
+  std::optional<std::uint32_t> held_;  ///< index of the image that the caller looks at
   bool first_is_stale_ = true;
 };
 

@@ -23,12 +23,12 @@ class V4l2System {
   /// Shared, readable memory; null on failure.
   virtual void* map(int descriptor, std::size_t length, std::int64_t offset) = 0;
   virtual int unmap(void* address, std::size_t length) = 0;
-  /// Waits for a picture: 0 after `timeout`, 1 when there is one or the stream is broken.
+  /// Waits for an image: 0 after `timeout`, 1 when there is one or the stream is broken.
   virtual int poll(int descriptor, std::chrono::milliseconds timeout) = 0;
 
   /// /dev/video*, in the order of their numbers.
   [[nodiscard]] virtual std::vector<std::filesystem::path> video_nodes() const = 0;
-  /// The kernel's monotonic clock, which also stamps the pictures.
+  /// The kernel's monotonic clock, which also stamps the images.
   [[nodiscard]] virtual std::chrono::nanoseconds now() const = 0;
   virtual void pause(std::chrono::milliseconds duration) = 0;
 };

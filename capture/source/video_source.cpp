@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "capture/source/video_source.h"
 
+#include "capture/source/image_check.h"
 #include "capture/source/motion_jpeg_source.h"
-#include "capture/source/picture_check.h"
 #include "capture/source/read_ahead_source.h"
 #include "capture/source/recording_end.h"
 #include "core/diagnostics/error.h"
@@ -27,7 +27,7 @@ bool is_usable_fps(double fps) {
 /// Any codec, by FFmpeg through OpenCV.
 class VideoSource : public FrameSource {
  public:
-  VideoSource(const std::filesystem::path& path, const PictureSize& size, const FrameRange& range,
+  VideoSource(const std::filesystem::path& path, const ImageSize& size, const FrameRange& range,
               std::optional<double> fps)
       : path_(path), size_(size), range_(range), given_fps_(fps) {
     open();
@@ -82,7 +82,7 @@ class VideoSource : public FrameSource {
       throw core::bad_input(path_, "frame " + std::to_string(index) + " cannot be decoded",
                             "record or convert the video again");
     }
-    check_picture_size(path_, {image.cols, image.rows}, size_);
+    check_image_size(path_, {image.cols, image.rows}, size_);
     return Frame{std::move(image), given_fps_ ? index / *given_fps_ : time_s_, index};
   }
 
@@ -97,7 +97,7 @@ class VideoSource : public FrameSource {
   }
 
   std::filesystem::path path_;
-  PictureSize size_;
+  ImageSize size_;
   FrameRange range_;
   std::optional<double> given_fps_;
   cv::VideoCapture capture_;
@@ -112,7 +112,7 @@ class VideoSource : public FrameSource {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, const PictureSize& size,
+std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, const ImageSize& size,
                                         const FrameRange& range, std::optional<double> fps) {
   std::error_code no_throw;
   if (!std::filesystem::is_regular_file(path, no_throw)) {

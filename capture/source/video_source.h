@@ -12,12 +12,12 @@ namespace sheen::capture {
 
 /// Frames of a video file in BGR. Frames before the range are decoded and dropped, since seeking
 /// lands on key frames in most files. Times come from the file, or from `fps` where it is given.
-/// Throws core::Error (bad_input): missing file, nothing to decode, another picture size (found at
+/// Throws core::Error (bad_input): missing file, nothing to decode, another image size (found at
 /// the first frame, before this returns), and from `next()` when decoding stops early: more than
 /// one frame short of the number the container states and more than two frame times short of its
 /// length (containers over-state by a frame, and state frames of even spacing where the recording
 /// has gaps, so being short by one of the two only is no fault).
-std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, const PictureSize& size,
+std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, const ImageSize& size,
                                         const FrameRange& range, std::optional<double> fps);
 
 }  // namespace sheen::capture

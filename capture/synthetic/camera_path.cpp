@@ -18,7 +18,7 @@ constexpr double kAzimuthShakeDeg = 2.5;
 constexpr double kElevationShakeDeg = 2.0;
 constexpr double kRollShakeDeg = 4.0;
 
-/// Camera at `eye` that looks at `target`, its picture upright and then rolled.
+/// Camera at `eye` that looks at `target`, its image upright and then rolled.
 Eigen::Isometry3d looking_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target,
                              double roll_rad) {
   const Eigen::Vector3d forward = (target - eye).normalized();

@@ -17,9 +17,9 @@ MotionJpegFile::MotionJpegFile(std::filesystem::path path, cv::Size size_px, int
       quality_(quality),
       file_(path_, {size_px.width, size_px.height}, fps) {}
 
-void MotionJpegFile::append(const cv::Mat& picture) {
-  assert(picture.type() == CV_8UC3 && picture.size() == size_px_);
-  cv::imencode(".jpg", picture, jpeg_, {cv::IMWRITE_JPEG_QUALITY, quality_});
+void MotionJpegFile::append(const cv::Mat& image) {
+  assert(image.type() == CV_8UC3 && image.size() == size_px_);
+  cv::imencode(".jpg", image, jpeg_, {cv::IMWRITE_JPEG_QUALITY, quality_});
   check(file_.append(jpeg_));
 }
 

@@ -99,7 +99,7 @@ Exposure Photographer::expose(const Scene& scene, const Eigen::Isometry3d& board
 }
 
 cv::Mat develop(const cv::Mat& light, const SensorNoise& noise, std::uint32_t seed) {
-  cv::Mat picture(light.size(), CV_8UC3);
+  cv::Mat image(light.size(), CV_8UC3);
   for (int y = 0; y < light.rows; ++y) {
     for (int x = 0; x < light.cols; ++x) {
       const cv::Vec3f linear = light.at<cv::Vec3f>(y, x);
@@ -108,7 +108,7 @@ cv::Mat develop(const cv::Mat& light, const SensorNoise& noise, std::uint32_t se
       const Eigen::Vector2f first = normal_pair(hash(place, 3U));
       const Eigen::Vector2f second = normal_pair(hash(place, 4U));
       const Eigen::Vector3f unit(first.x(), first.y(), second.x());
-      cv::Vec3b& bgr = picture.at<cv::Vec3b>(y, x);
+      cv::Vec3b& bgr = image.at<cv::Vec3b>(y, x);
       for (int channel = 0; channel < 3; ++channel) {
         const float value = linear[channel];
         const float sigma = std::sqrt(noise.read * noise.read + noise.shot * std::max(value, 0.0f));
@@ -116,7 +116,7 @@ cv::Mat develop(const cv::Mat& light, const SensorNoise& noise, std::uint32_t se
       }
     }
   }
-  return picture;
+  return image;
 }
 
 }  // namespace sheen::capture::synthetic

@@ -44,7 +44,7 @@ struct SensorNoise {
 };
 inline constexpr SensorNoise kNoNoise{0, 0};
 
-/// Exposure -> 8-bit sRGB picture, CV_8UC3 in OpenCV's BGR order. `seed` decides the noise.
+/// Exposure -> 8-bit sRGB image, CV_8UC3 in OpenCV's BGR order. `seed` decides the noise.
 cv::Mat develop(const cv::Mat& light, const SensorNoise& noise, std::uint32_t seed);
 
 }  // namespace sheen::capture::synthetic

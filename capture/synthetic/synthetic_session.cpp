@@ -47,7 +47,7 @@ core::Error write_failure(const fs::path& path) {
           "check free space and permissions"};
 }
 
-/// Counts pictures for the caller.
+/// Counts images for the caller.
 class Counter {
  public:
   Counter(const Progress& progress, int total) : progress_(progress), total_(total) {}

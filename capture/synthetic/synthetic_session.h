@@ -39,13 +39,13 @@ core::CameraModel synthetic_camera(int width_px, int height_px);
 /// is not between 1 cm and 2 m in radius.
 Scene make_scene(const SyntheticOptions& options);
 
-/// Called after every picture; an exception it throws ends the work and leaves nothing behind.
+/// Called after every image; an exception it throws ends the work and leaves nothing behind.
 using Progress = std::function<void(int done, int total)>;
 
-/// Writes a session folder (docs/session-format.md) with frames.avi, board.yaml, truth_poses.txt and, for
-/// `held_out` > 0, the session held_out/ of noise-free PNG views with their exact poses. The same
-/// options give the same bytes whatever `threads` is.
-/// Throws core::Error when the place cannot be written.
+/// Writes a session folder (docs/session-format.md) with frames.avi, board.yaml, truth_poses.txt
+/// and, for `held_out` > 0, the session held_out/ of noise-free PNG views with their exact poses.
+/// The same options give the same bytes whatever `threads` is. Throws core::Error when the place
+/// cannot be written.
 void write_synthetic_session(const std::filesystem::path& folder, const SyntheticOptions& options,
                              const Progress& progress);
 

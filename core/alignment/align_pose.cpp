@@ -37,7 +37,7 @@ struct State {
 struct System {
   Matrix7d H = Matrix7d::Zero();
   Vector7d g = Vector7d::Zero();
-  Matrix6d motion = Matrix6d::Zero();  ///< mean square motion in the picture of a twist, px^2
+  Matrix6d motion = Matrix6d::Zero();  ///< mean square motion in the image of a twist, px^2
   double cost = 0;                     ///< mean Huber cost
   double weight = 0;                   ///< sum of the points' weights
   std::size_t points = 0;
@@ -59,18 +59,18 @@ class Aligner {
   }
 
   /// The start with the gain that suits it.
-  [[nodiscard]] std::optional<State> first_state(const GradientPicture& picture) {
+  [[nodiscard]] std::optional<State> first_state(const GradientImage& image) {
     State state{start_};
-    const auto ratio = median_ratio(picture);
+    const auto ratio = median_ratio(image);
     if (!ratio) return std::nullopt;
     state.gain = *ratio;
     return state;
   }
 
   /// Sets the width of the robust cost from the residuals at `state`.
-  void set_spread(const GradientPicture& picture, const State& state) {
+  void set_spread(const GradientImage& image, const State& state) {
     scratch_.clear();
-    for_each_residual(picture, state, [&](std::size_t, double residual, const auto&, const auto&) {
+    for_each_residual(image, state, [&](std::size_t, double residual, const auto&, const auto&) {
       scratch_.push_back(std::abs(residual));
     });
     spread_ = scratch_.empty() ? kSmallestSpread
@@ -80,8 +80,8 @@ class Aligner {
   [[nodiscard]] double spread() const { return spread_; }
 
   /// Gauss-Newton steps, halved until the cost falls, until they are too short to matter.
-  void descend(const GradientPicture& picture, State& state, bool gain_only = false) {
-    System system = linearise(picture, state);
+  void descend(const GradientImage& image, State& state, bool gain_only = false) {
+    System system = linearise(image, state);
     for (int i = 0; i < limits_.iterations; ++i) {
       const Vector7d step = solve(system, state, gain_only);
       if (!step.allFinite()) return;
@@ -89,7 +89,7 @@ class Aligner {
       double scale = 1;
       for (int halving = 0; halving < kHalvings && !has_improved; ++halving, scale /= 2) {
         const State candidate = moved(state, scale * step);
-        const System there = linearise(picture, candidate);
+        const System there = linearise(image, candidate);
         if (there.points + there.points / 10 < system.points) continue;
         if (!(total_cost(there, candidate) < total_cost(system, state))) continue;
         state = candidate;
@@ -100,9 +100,9 @@ class Aligner {
     }
   }
 
-  /// Length of the first step from the start, px: tells whether a coarser picture is needed.
-  [[nodiscard]] double first_step_px(const GradientPicture& picture, const State& state) {
-    const System system = linearise(picture, state);
+  /// Length of the first step from the start, px: tells whether a coarser image is needed.
+  [[nodiscard]] double first_step_px(const GradientImage& image, const State& state) {
+    const System system = linearise(image, state);
     return motion_of(system, solve(system, state, false));
   }
 
@@ -131,12 +131,12 @@ class Aligner {
     return count == 0 ? kInfinity : sum / static_cast<double>(count);
   }
 
-  [[nodiscard]] System linearise(const GradientPicture& picture, const State& state) const {
+  [[nodiscard]] System linearise(const GradientImage& image, const State& state) const {
     System system;
     const double width = kHuberFactor * spread_;
     const Eigen::Vector3d centre = state.camera_from_object * centre_in_object_;
     for_each_residual(
-        picture, state,
+        image, state,
         [&](std::size_t i, double residual, const ProjectedPoint& at, const auto& reading) {
           const Eigen::Vector3d arm =
               (state.camera_from_object * points_.position[i].cast<double>() - centre) / radius_m_;
@@ -165,25 +165,24 @@ class Aligner {
   }
 
  private:
-  /// Calls `visit(i, residual, projection, reading)` for the points within the picture.
+  /// Calls `visit(i, residual, projection, reading)` for the points within the image.
   template <typename Visit>
-  void for_each_residual(const GradientPicture& picture, const State& state,
-                         const Visit& visit) const {
+  void for_each_residual(const GradientImage& image, const State& state, const Visit& visit) const {
     for (std::size_t i = 0; i < points_.size(); ++i) {
       const auto at = project_with_derivative(
           camera_, state.camera_from_object * points_.position[i].cast<double>());
       if (!at) continue;
-      const auto reading = picture.read(at->pixel);
+      const auto reading = image.read(at->pixel);
       if (!reading) continue;
       visit(i, reading->value - state.gain * static_cast<double>(points_.luma[i]), *at, *reading);
     }
   }
 
-  [[nodiscard]] std::optional<double> median_ratio(const GradientPicture& picture) {
+  [[nodiscard]] std::optional<double> median_ratio(const GradientImage& image) {
     constexpr float darkest = 0.02f;
     scratch_.clear();
     const State state{start_, 0};
-    for_each_residual(picture, state, [&](std::size_t i, double value, const auto&, const auto&) {
+    for_each_residual(image, state, [&](std::size_t i, double value, const auto&, const auto&) {
       if (points_.luma[i] < darkest) return;
       scratch_.push_back(value / static_cast<double>(points_.luma[i]));
     });
@@ -246,37 +245,37 @@ class Aligner {
 
 }  // namespace
 
-std::optional<Alignment> align_pose(const ExpectedPoints& points, const GradientPicture& picture,
+std::optional<Alignment> align_pose(const ExpectedPoints& points, const GradientImage& image,
                                     const CameraModel& camera,
                                     const Eigen::Isometry3d& camera_from_object,
                                     const AlignmentLimits& limits) {
   assert(points.luma.size() == points.size() && points.weight.size() == points.size());
   if (points.size() < limits.min_points) return std::nullopt;
   Aligner aligner(points, camera, camera_from_object, limits);
-  auto state = aligner.first_state(picture);
+  auto state = aligner.first_state(image);
   if (!state) return std::nullopt;
 
-  // Come near on a coarser picture when the first step is long.
-  aligner.set_spread(picture, *state);
-  const double first_step_px = aligner.first_step_px(picture, *state);
+  // Come near on a coarser image when the first step is long.
+  aligner.set_spread(image, *state);
+  const double first_step_px = aligner.first_step_px(image, *state);
   if (!std::isfinite(first_step_px)) return std::nullopt;
   State start = *state;
   if (first_step_px > limits.coarse_from_px) {
-    const GradientPicture coarse = picture.smoothed(limits.coarse_smoothing_px);
+    const GradientImage coarse = image.smoothed(limits.coarse_smoothing_px);
     aligner.set_spread(coarse, *state);
     aligner.descend(coarse, *state);
   }
 
   // Settle on the fine one; the second time with the spread that remains.
   for (int round = 0; round < 2; ++round) {
-    aligner.set_spread(picture, *state);
-    aligner.descend(picture, *state);
+    aligner.set_spread(image, *state);
+    aligner.descend(image, *state);
   }
 
-  // Believe it only if it explains the picture better than the start with its own best gain.
-  aligner.descend(picture, start, true);
-  const System before = aligner.linearise(picture, start);
-  const System after = aligner.linearise(picture, *state);
+  // Believe it only if it explains the image better than the start with its own best gain.
+  aligner.descend(image, start, true);
+  const System before = aligner.linearise(image, start);
+  const System after = aligner.linearise(image, *state);
   Alignment result{state->camera_from_object,
                    state->gain,
                    aligner.mean_motion_px(camera_from_object, state->camera_from_object),

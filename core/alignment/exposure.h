@@ -14,7 +14,7 @@ struct ExposureLimits {
   double largest_change = 1.5;  ///< a gain outside [1 / this, this] gives no answer, > 1
 };
 
-/// Gain of a picture against the model: the median of `measured[i] / predicted[i]` (luma of
+/// Gain of an image against the model: the median of `measured[i] / predicted[i]` (luma of
 /// display-referred sRGB, [0, 1]) over the pairs that are well exposed on both sides. Under a power
 /// law for display a change of exposure is such a factor. `ratios` is scratch space.
 std::optional<double> estimate_gain(const std::vector<float>& measured,

@@ -22,7 +22,7 @@ double distance_px(const VertexView& view, std::uint32_t a, std::uint32_t b) {
 /// `reached` is scratch space.
 bool is_inside(const VertexView& view, const VertexNeighbours& neighbours, std::uint32_t start,
                double radius_px, std::vector<std::uint32_t>& reached) {
-  constexpr std::size_t most = 48;  // of a mesh far finer than the picture: near enough
+  constexpr std::size_t most = 48;  // of a mesh far finer than the image: near enough
   reached.assign(1, start);
   for (std::size_t i = 0; i < reached.size() && reached.size() < most; ++i) {
     for (const std::uint32_t next : neighbours.of(reached[i])) {
@@ -58,7 +58,7 @@ std::optional<cv::Rect> visible_region(const VertexView& view, int margin_px) {
 }
 
 void select_points(const VertexView& view, const VertexNeighbours& neighbours,
-                   const std::vector<std::uint8_t>& usable, const GradientPicture& picture,
+                   const std::vector<std::uint8_t>& usable, const GradientImage& image,
                    const SelectionLimits& limits, std::vector<std::uint32_t>& selected) {
   assert(usable.size() == view.rejection.size());
   // Rank by gradient; equal ones by index, so that the choice is one.
@@ -66,7 +66,7 @@ void select_points(const VertexView& view, const VertexNeighbours& neighbours,
   for (std::uint32_t i = 0; i < view.rejection.size(); ++i) {
     if (view.rejection[i] != VertexRejection::none || usable[i] == 0) continue;
     const auto reading =
-        picture.read({static_cast<double>(view.x_px[i]), static_cast<double>(view.y_px[i])});
+        image.read({static_cast<double>(view.x_px[i]), static_cast<double>(view.y_px[i])});
     if (!reading) continue;
     const double gradient = reading->gradient.norm();
     if (gradient >= limits.min_gradient) candidates.push_back({gradient, i});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "core/alignment/gradient_picture.h"
+#include "core/alignment/gradient_image.h"
 #include "core/mesh/neighbours.h"
 #include "core/samples/vertex_view.h"
 
@@ -17,7 +17,7 @@ namespace sheen::core {
 /// nothing when none is left.
 std::optional<cv::Rect> visible_region(const VertexView& view, int margin_px);
 
-/// Which vertices can tell a shift of the picture.
+/// Which vertices can tell a shift of the image.
 struct SelectionLimits {
   std::size_t max_points = 1500;  ///< the strongest gradients are taken
   double min_gradient = 0.008;    ///< luma per px; weaker ones are noise
@@ -29,7 +29,7 @@ struct SelectionLimits {
 /// edges of the mesh not rejected either, strongest gradients first served; ascending. The result
 /// replaces `selected`.
 void select_points(const VertexView& view, const VertexNeighbours& neighbours,
-                   const std::vector<std::uint8_t>& usable, const GradientPicture& picture,
+                   const std::vector<std::uint8_t>& usable, const GradientImage& image,
                    const SelectionLimits& limits, std::vector<std::uint32_t>& selected);
 
 }  // namespace sheen::core

@@ -29,7 +29,7 @@ class CameraModel {
   [[nodiscard]] int height_px() const { return intrinsics_.height_px; }
 
   /// Largest distance from the optical axis, in the plane z = 1, up to which the radial polynomial
-  /// grows. Beyond it the polynomial folds back and points far outside would land in the picture.
+  /// grows. Beyond it the polynomial folds back and points far outside would land in the image.
   [[nodiscard]] double valid_radius() const { return valid_radius_; }
 
   /// Ideal position in the plane z = 1 -> position the lens makes of it, same plane.
@@ -39,7 +39,7 @@ class CameraModel {
   [[nodiscard]] std::optional<Eigen::Vector2d> undistort(const Eigen::Vector2d& distorted) const;
 
   /// Point in the camera frame (metres) -> pixel; no value behind the camera or beyond
-  /// `valid_radius`. The pixel may lie outside the picture.
+  /// `valid_radius`. The pixel may lie outside the image.
   [[nodiscard]] std::optional<Eigen::Vector2d> project(
       const Eigen::Vector3d& point_in_camera) const;
 

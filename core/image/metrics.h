@@ -7,7 +7,7 @@
 
 namespace sheen::core {
 
-/// Difference of two pictures over a mask (docs/conventions.md, "image error").
+/// Difference of two images over a mask (docs/conventions.md, "image error").
 struct ImageError {
   double psnr_db = 0;  ///< -10 log10(mean squared error over pixels and channels); 99 when equal
   double ssim = 0;     ///< mean over the mask, 11x11 Gaussian, sigma 1.5, mean of the channels
@@ -20,7 +20,7 @@ struct ImageError {
 std::optional<ImageError> image_error(const cv::Mat& image, const cv::Mat& reference,
                                       const cv::Mat& mask);
 
-/// Mask shrunk by `pixels` against silhouette and pose error; the picture's border shrinks it too.
+/// Mask shrunk by `pixels` against silhouette and pose error; the image's border shrinks it too.
 cv::Mat eroded(const cv::Mat& mask, int pixels);
 
 }  // namespace sheen::core

@@ -7,9 +7,9 @@
 
 namespace sheen::core {
 
-/// Writes a picture in the format of its ending (.png, .jpg), beside its final name and then moved
-/// into place; missing folders are made. Throws Error (bad_input) for an ending no encoder knows and
-/// Error (run_failed) when writing fails.
+/// Writes an image in the format of its ending (.png, .jpg), beside its final name and then moved
+/// into place; missing folders are made. Throws Error (bad_input) for an ending no encoder knows
+/// and Error (run_failed) when writing fails.
 void write_image(const std::filesystem::path& path, const cv::Mat& image);
 
 }  // namespace sheen::core

@@ -26,7 +26,7 @@ void choose_patches(const cv::Mat& image, const VertexView& view,
     chosen += view.rejection[i] == VertexRejection::none ? 1 : 0;
   }
   patches.resize(chosen);
-  // The border margin promises four pixels; a view made for another picture does not.
+  // The border margin promises four pixels; a view made for another image does not.
   std::erase_if(patches, [&](std::uint32_t i) {
     return !has_neighbourhood(image, view.x_px[i], view.y_px[i]);
   });

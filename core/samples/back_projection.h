@@ -8,7 +8,7 @@
 
 namespace sheen::core {
 
-/// Reads the picture under every vertex that is not rejected, bilinearly.
+/// Reads the image under every vertex that is not rejected, bilinearly.
 /// `image` is CV_8UC3 in OpenCV's BGR order; samples are RGB in [0, 1]. Reuses the storage of
 /// `batch`: after the first views nothing is allocated.
 void back_project(const cv::Mat& image, const VertexView& view, SampleBatch& batch);

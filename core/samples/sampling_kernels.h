@@ -31,8 +31,8 @@ struct ProjectionColumns {
   VertexRejection* rejection;
 };
 
-/// A CV_8UC3 picture.
-struct PictureView {
+/// A CV_8UC3 image.
+struct ImageView {
   const std::uint8_t* pixels;
   std::size_t row_bytes;
 };
@@ -51,7 +51,7 @@ struct SamplingKernels {
   void (*project)(const ProjectionSetup&, const ProjectionColumns&, std::size_t begin,
                   std::size_t end);
   /// Fills the samples [0, count) of the patches named, whose four pixels must exist.
-  void (*read)(const PictureView&, const ReadingColumns&, std::size_t count);
+  void (*read)(const ImageView&, const ReadingColumns&, std::size_t count);
 };
 
 /// All that this processor can run, the fastest first; "portable" is always among them.

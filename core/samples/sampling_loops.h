@@ -104,9 +104,9 @@ inline std::uint32_t word_at(const std::uint8_t* bytes) {
   return word;
 }
 
-/// Fetches the four pixels around every position. No byte beyond the picture is read: the right
+/// Fetches the four pixels around every position. No byte beyond the image is read: the right
 /// pixel is the upper part of a word that begins in the left one.
-inline void fetch_pixels(const PictureView& picture, const ReadingColumns& c, std::size_t first,
+inline void fetch_pixels(const ImageView& image, const ReadingColumns& c, std::size_t first,
                          std::size_t count, PixelBlock& block) {
   for (std::size_t s = 0; s < count; ++s) {
     const std::uint32_t vertex_idx = c.patch[first + s];
@@ -119,8 +119,8 @@ inline void fetch_pixels(const PictureView& picture, const ReadingColumns& c, st
     block.right[s] = x_px - static_cast<float>(x);
     block.down[s] = y_px - static_cast<float>(y);
     const std::uint8_t* upper =
-        picture.pixels + static_cast<std::size_t>(y) * picture.row_bytes + 3 * x;
-    const std::uint8_t* lower = upper + picture.row_bytes;
+        image.pixels + static_cast<std::size_t>(y) * image.row_bytes + 3 * x;
+    const std::uint8_t* lower = upper + image.row_bytes;
     block.upper_left[s] = word_at(upper);
     block.upper_right[s] = word_at(upper + 2) >> 8;
     block.lower_left[s] = word_at(lower);
@@ -144,11 +144,11 @@ inline void blend_channel(const PixelBlock& block, int shift, std::size_t count,
   }
 }
 
-inline void read(const PictureView& picture, const ReadingColumns& c, std::size_t count) {
+inline void read(const ImageView& image, const ReadingColumns& c, std::size_t count) {
   PixelBlock block;
   for (std::size_t first = 0; first < count; first += kBlock) {
     const std::size_t size = count - first < kBlock ? count - first : kBlock;
-    fetch_pixels(picture, c, first, size, block);
+    fetch_pixels(image, c, first, size, block);
     blend_channel(block, 0, size, c.b + first);
     blend_channel(block, 8, size, c.g + first);
     blend_channel(block, 16, size, c.r + first);

@@ -23,12 +23,12 @@ std::string_view name_of(VertexRejection rejection);
 /// Which vertices may become samples.
 struct SamplingLimits {
   float min_cosine = 0.2f;  ///< grazing cut-off: smallest cosine between normal and view, [0, 1)
-  float border_margin_px = 2.0f;  ///< samples nearer to the picture's border are refused, >= 1;
+  float border_margin_px = 2.0f;  ///< samples nearer to the image's border are refused, >= 1;
                                   ///< counted from the centres of the outermost pixels
 };
 
 /// All vertices of a mesh seen by one camera. Structure of arrays, one entry per vertex. Pixels
-/// hold wherever `depth_m` > 0, outside the picture too; directions where the vertex is not
+/// hold wherever `depth_m` > 0, outside the image too; directions where the vertex is not
 /// rejected.
 struct VertexView {
   std::vector<float> x_px, y_px;  ///< pixel, OpenCV's convention, lens distortion included
@@ -47,7 +47,7 @@ std::vector<TangentFrame> tangent_frames(const Mesh& mesh);
 Eigen::Vector3f eye_in_object(const Eigen::Isometry3d& camera_from_object);
 
 /// Projects every vertex and applies the limits that need no other vertex (all but `occluded`). The
-/// first that fails is noted: behind the camera, beyond the lens model or outside the picture less
+/// first that fails is noted: behind the camera, beyond the lens model or outside the image less
 /// its margin (outside_image), cosine <= 0 (back_facing), cosine < min_cosine (grazing). Reuses the
 /// storage of `view`. Single precision; the same bits on any number of threads and on every
 /// processor.

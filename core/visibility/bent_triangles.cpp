@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kStraight_px = 0.25;
 /// Longest edge by distance of a triangle that may have corners without pixels: the lens model
-/// ends farther outside the picture than that.
+/// ends farther outside the image than that.
 constexpr double kSmall = 0.1;
 
 bool is_small(const std::array<Eigen::Vector3d, 3>& in_camera) {

@@ -10,8 +10,8 @@
 namespace sheen::core {
 
 /// Whether straight edges between the pixels of a triangle's corners (object frame, metres) are no
-/// good picture of it: the middle of an edge lies more than a quarter of a pixel beside its line,
-/// or a corner has no pixel and the triangle is not small enough to lie outside the picture for
+/// good image of it: the middle of an edge lies more than a quarter of a pixel beside its line,
+/// or a corner has no pixel and the triangle is not small enough to lie outside the image for
 /// that.
 bool is_bent(const CameraModel& camera, const Eigen::Isometry3d& camera_from_object,
              const std::array<Eigen::Vector3f, 3>& corners);

@@ -13,7 +13,7 @@
 
 namespace sheen::core {
 
-/// Rectangle of pixels of the picture, both ends included.
+/// Rectangle of pixels of the image, both ends included.
 struct PixelBox {
   int left = 0, top = 0, right = -1, bottom = -1;
 };
@@ -23,7 +23,7 @@ class DepthRaster {
  public:
   DepthRaster(const Mesh& mesh, int threads, const RasterKernels& kernels);
 
-  /// Draws the part of the picture that `box` holds, of a view from `eye` (object frame, metres).
+  /// Draws the part of the image that `box` holds, of a view from `eye` (object frame, metres).
   /// False where too many triangles are large: then nothing is promised.
   bool draw(const VertexView& view, const Eigen::Vector3f& eye, const PixelBox& box);
 

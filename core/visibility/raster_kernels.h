@@ -32,7 +32,7 @@ struct TriangleCorners {
   std::size_t count;  ///< multiple of 8
 };
 
-/// A front so large on the picture that its edges may not be straight there.
+/// A front so large on the image that its edges may not be straight there.
 struct LargeTriangle {
   std::uint32_t corners[3];
 };

@@ -135,7 +135,7 @@ SHEEN_INLINE Setup set_up(const Corner& p0, const Corner& p2, const Corner& p1, 
   s.drawn = projected & (area > kLeastArea_px2) & (s.left <= s.right) & (s.top <= s.bottom);
   s.large = (s.drawn & ((right - left > large_px) | (bottom - top > large_px))) | ~projected;
 
-  // Edges and the plane of the nearness, which is linear on the picture.
+  // Edges and the plane of the nearness, which is linear on the image.
   const Floats x0 = __builtin_convertvector(s.left & -kGroup, Floats);
   const Floats y0 = __builtin_convertvector(s.top, Floats);
   set_edge(s, 0, p0, p1, x0, y0);

@@ -63,7 +63,7 @@ class OsmesaContext final : public Context {
   }
 
   void make_current() override {
-    if (make_current_(context_.get(), picture_.data(), GL_UNSIGNED_BYTE, kSide, kSide) != GL_TRUE) {
+    if (make_current_(context_.get(), image_.data(), GL_UNSIGNED_BYTE, kSide, kSide) != GL_TRUE) {
       throw failure("cannot make its context current");
     }
   }
@@ -74,9 +74,9 @@ class OsmesaContext final : public Context {
 
  private:
   using DestroyFunction = decltype(&OSMesaDestroyContext);
-  static constexpr int kSide = 16;  // OSMesa wants a picture; we draw into framebuffer objects
+  static constexpr int kSide = 16;  // OSMesa wants an image; we draw into framebuffer objects
 
-  std::array<GLubyte, kSide * kSide * 4> picture_{};
+  std::array<GLubyte, kSide * kSide * 4> image_{};
   Library library_;
   decltype(&OSMesaMakeCurrent) make_current_;
   decltype(&OSMesaGetProcAddress) get_proc_address_;

@@ -9,7 +9,7 @@
 namespace sheen::render::evaluated {
 
 /// For any light field: calls LightField::evaluate for every vertex and view on the CPU, in
-/// parallel, and sends 8 bytes per patch. The picture is that of a shader of its own; the time per
+/// parallel, and sends 8 bytes per patch. The image is that of a shader of its own; the time per
 /// view is not. All must outlive it.
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl, const core::Mesh& mesh,
                                                const fitting::LightField& light_field);

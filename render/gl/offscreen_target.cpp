@@ -11,8 +11,8 @@ namespace {
 
 core::Error failure(int width_px, int height_px) {
   return {core::Error::Kind::run_failed,
-          "picture of " + std::to_string(width_px) + " x " + std::to_string(height_px) + " pixels",
-          "cannot be drawn by this OpenGL driver", "use smaller pictures"};
+          "image of " + std::to_string(width_px) + " x " + std::to_string(height_px) + " pixels",
+          "cannot be drawn by this OpenGL driver", "use smaller images"};
 }
 
 Texture make_plane(const Functions& gl, GLenum format, int width_px, int height_px) {

@@ -19,7 +19,7 @@ class SurfaceLayer {
   /// Sends the paint of these patches (ascending, no repeats). Returns the bytes sent.
   std::size_t upload(std::span<const std::uint32_t> patches) { return paint_->upload(patches); }
 
-  /// Draws into `target`, made as large as the camera's picture; row 0 is the picture's first row.
+  /// Draws into `target`, made as large as the camera's image; row 0 is the image's first row.
   void draw(gl::OffscreenTarget& target, const core::CameraModel& camera,
             const Eigen::Isometry3d& camera_from_object);
 

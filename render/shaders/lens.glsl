@@ -6,7 +6,7 @@ layout(std140, binding = 0) uniform View {
   vec4 low_order;     // k1 k2 p1 p2
   vec4 high_order;    // k3 k4 k5 k6
   vec4 eye_and_near;  // eye in the object frame (metres); depth of the near plane (metres)
-  vec4 picture;       // width, height (pixels); valid radius, longest segment (in the plane z = 1)
+  vec4 image;       // width, height (pixels); valid radius, longest segment (in the plane z = 1)
 };
 
 vec2 distort(vec2 ideal) {
@@ -26,14 +26,14 @@ vec2 distort(vec2 ideal) {
 // infinity (reversed, clip control zero to one), which keeps full relative precision everywhere.
 vec4 clip_from_camera(vec3 p) {
   // Beyond the valid radius go on in a straight line, also for points behind the camera: there
-  // the polynomial would fold back into the picture.
-  float valid_radius = picture.z;
+  // the polynomial would fold back into the image.
+  float valid_radius = image.z;
   float r = length(p.xy);
   vec2 lens = r <= valid_radius * p.z ? distort(p.xy / p.z) * p.z
                                       : distort(p.xy * (valid_radius / r)) * (r / valid_radius);
 
   // Pixel (0, 0) is the centre of the first pixel; rows count downwards.
   vec2 from_corner = pinhole.xy * lens + (pinhole.zw + 0.5) * p.z;
-  vec2 clip = 2.0 * from_corner / picture.xy - p.z;
+  vec2 clip = 2.0 * from_corner / image.xy - p.z;
   return vec4(clip.x, -clip.y, eye_and_near.w, p.z);
 }

@@ -10,9 +10,9 @@ layout(location = 1) out vec4 control_sums[];
 #endif
 
 float segments(vec3 a, vec3 b) {
-  // Equal steps on the edge are longest in the picture at its near end.
+  // Equal steps on the edge are longest in the image at its near end.
   float depth = max(min(a.z, b.z), eye_and_near.w);
-  return clamp(ceil(distance(a, b) / (depth * picture.w)), 1.0, 64.0);
+  return clamp(ceil(distance(a, b) / (depth * image.w)), 1.0, 64.0);
 }
 
 void main() {

@@ -32,7 +32,7 @@ class ReferenceRenderer final : public SurfaceRenderer {
     assert(light_field.patch_count() == mesh.positions.size());
   }
 
-  /// Nothing to do: the light field is read at every picture.
+  /// Nothing to do: the light field is read at every image.
   void upload(const fitting::ModelUpdate& /*update*/) override {}
 
   RenderedView render(const core::CameraModel& camera,
@@ -71,7 +71,7 @@ class ReferenceRenderer final : public SurfaceRenderer {
   }
 
   void evaluate_vertices(const Eigen::Vector3f& eye) {
-    // Mark what the picture needs.
+    // Mark what the image needs.
     needed_.assign(mesh_.positions.size(), 0);
     for (const PixelHit& hit : hits_) {
       if (hit.triangle_idx == kNoTriangle) continue;

@@ -139,7 +139,7 @@ void SurfacePass::upload(const core::Mesh& mesh) {
 
 void SurfacePass::set_state(const core::CameraModel& camera) const {
   gl_.Viewport(0, 0, camera.width_px(), camera.height_px());
-  // Upper left: row 0 of what is read back is the picture's first row.
+  // Upper left: row 0 of what is read back is the image's first row.
   gl_.ClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
   gl_.Enable(GL_DEPTH_TEST);
   gl_.DepthFunc(GL_GREATER);

@@ -14,7 +14,7 @@
 
 namespace sheen::render {
 
-/// A picture of the light field as a camera sees it, lens distortion included.
+/// An image of the light field as a camera sees it, lens distortion included.
 struct RenderedView {
   cv::Mat image;    ///< CV_8UC3 BGR, black where nothing is
   cv::Mat mask;     ///< CV_8UC1: 255 where the mesh is seen
@@ -40,7 +40,7 @@ class SurfaceRenderer {
 /// than 0.05 pixels triangles are tessellated, into at most 64 segments per edge. Pixels no ray of
 /// the lens model reaches stay black. May be called from any thread, one at a time; the context is
 /// made current there. Context, mesh and light field must outlive the renderer. Throws core::Error
-/// (run_failed) for models or pictures too large for the driver.
+/// (run_failed) for models or images too large for the driver.
 std::unique_ptr<SurfaceRenderer> make_gl_surface_renderer(Context& context, const core::Mesh& mesh,
                                                           const fitting::LightField& light_field);
 

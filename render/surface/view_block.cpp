@@ -20,7 +20,7 @@ bool has_distortion(const core::CameraModel& camera) {
   return std::any_of(k.begin(), k.end(), [](double value) { return value != 0; });
 }
 
-/// Distance from the axis, in the plane z = 1, of what the picture's corners see.
+/// Distance from the axis, in the plane z = 1, of what the image's corners see.
 double widest_radius(const core::CameraModel& camera) {
   double widest = 0;
   for (const double x : {-0.5, camera.width_px() - 0.5}) {
@@ -64,7 +64,7 @@ ViewBlock make_view_block(const core::CameraModel& camera,
   block.low_order = floats(k[0], k[1], k[2], k[3]);
   block.high_order = floats(k[4], k[5], k[6], k[7]);
   block.eye_and_near = floats(eye.x(), eye.y(), eye.z(), near_m);
-  block.picture =
+  block.image =
       floats(in.width_px, in.height_px, camera.valid_radius(), std::min(longest_segment, 1e9));
   return block;
 }
@@ -72,7 +72,7 @@ ViewBlock make_view_block(const core::CameraModel& camera,
 double longest_straight_segment(const core::CameraModel& camera) {
   if (!has_distortion(camera)) return std::numeric_limits<double>::infinity();
 
-  // Look for the strongest bend on a grid over the disc that the picture sees.
+  // Look for the strongest bend on a grid over the disc that the image sees.
   constexpr int steps = 8;
   const double radius = std::min(widest_radius(camera), camera.valid_radius());
   double strongest = 0;

@@ -19,7 +19,7 @@ struct ViewBlock {
   std::array<float, 4> low_order;
   std::array<float, 4> high_order;
   std::array<float, 4> eye_and_near;
-  std::array<float, 4> picture;
+  std::array<float, 4> image;
 };
 
 /// `near_m` is the depth of the near plane, `longest_segment` see below (infinity becomes a large
@@ -29,7 +29,7 @@ ViewBlock make_view_block(const core::CameraModel& camera,
                           double longest_segment);
 
 /// Longest straight segment, measured in the plane z = 1, that the lens bends by no more than
-/// `kSagittaLimitPx` anywhere in the picture; infinity without distortion. The middle of a segment
+/// `kSagittaLimitPx` anywhere in the image; infinity without distortion. The middle of a segment
 /// of length s lies about |D''| s^2 / 8 beside the image of its ends, D being the lens map.
 double longest_straight_segment(const core::CameraModel& camera);
 

@@ -86,7 +86,7 @@ TEST_F(BadInput, EmptyVideo) {
   expect_refused("frames.avi");
 }
 
-TEST_F(BadInput, CameraOfAnotherPictureSize) {
+TEST_F(BadInput, CameraOfAnotherImageSize) {
   replace("camera.yaml", "image_width: *[0-9]+", "image_width: 320");
   expect_refused("320x360");
 }

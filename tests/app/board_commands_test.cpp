@@ -42,9 +42,9 @@ class BoardCommands : public testing::Test {
 
 TEST_F(BoardCommands, CalibrateFindsTheSampleCamera) {
   const auto camera = folder_.path() / "camera.yaml";
-  const auto picture = folder_.path() / "coverage.png";
+  const auto image = folder_.path() / "coverage.png";
   const ProgramRun run = run_sheen({"calibrate", session_, "--board", session_ / "board.yaml", "-o",
-                                    camera, "--picture", picture, "--json", "--quiet"});
+                                    camera, "--picture", image, "--json", "--quiet"});
   ASSERT_EQ(run.exit_code, 0) << run.standard_error;
   const auto found = capture::read_camera(camera).intrinsics();
   const auto truth = capture::read_camera(session_ / "camera.yaml").intrinsics();
@@ -59,10 +59,10 @@ TEST_F(BoardCommands, CalibrateFindsTheSampleCamera) {
                 0.5 + 4 * report["principal_sigma_px"][index].get<double>());
   }
   EXPECT_LT(report["rms_px"].get<double>(), 0.2);
-  EXPECT_TRUE(std::filesystem::is_regular_file(picture));
+  EXPECT_TRUE(std::filesystem::is_regular_file(image));
 }
 
-TEST_F(BoardCommands, CalibrateRefusesPicturesOfSomethingElse) {
+TEST_F(BoardCommands, CalibrateRefusesImagesOfSomethingElse) {
   const auto camera = folder_.path() / "camera.yaml";
   write_file(camera, "an earlier camera");
   const auto other = folder_.path() / "other.pdf";

@@ -17,16 +17,16 @@ namespace {
 
 constexpr int kFrames = 16;
 
-/// Delivers the pictures of the sample recording, as fast as they are asked for, starting at some
-/// time of a clock. Loses a picture now and then, as cameras do.
+/// Delivers the images of the sample recording, as fast as they are asked for, starting at some
+/// time of a clock. Loses an image now and then, as cameras do.
 class PlayingCamera : public capture::Camera {
  public:
-  /// Fails after `pictures`; without a value it goes on to the recording's end.
-  explicit PlayingCamera(std::optional<int> pictures = std::nullopt)
-      : reader_(capture::AviReader::open(sample_session() / "frames.avi")), pictures_(pictures) {}
+  /// Fails after `images`; without a value it goes on to the recording's end.
+  explicit PlayingCamera(std::optional<int> images = std::nullopt)
+      : reader_(capture::AviReader::open(sample_session() / "frames.avi")), images_(images) {}
 
   std::optional<capture::CameraBuffer> next(std::chrono::milliseconds /*timeout*/) override {
-    if (pictures_ == delivered_ || !reader_->advance()) {
+    if (images_ == delivered_ || !reader_->advance()) {
       throw core::Error(core::Error::Kind::run_failed, "/dev/played", "was unplugged",
                         "plug it in again");
     }
@@ -47,7 +47,7 @@ class PlayingCamera : public capture::Camera {
 
  private:
   std::optional<capture::AviReader> reader_;
-  std::optional<int> pictures_;
+  std::optional<int> images_;
   int delivered_ = 0;
   std::uint32_t sequence_ = 7;
   capture::CameraCounts counts_;
@@ -110,7 +110,7 @@ TEST_F(LiveCapture, KeepsRecordingAndModelWhenTheCameraIsGone) {
   EXPECT_TRUE(model() == replay());
 }
 
-/// Says of itself that its raw pictures are of odd width.
+/// Says of itself that its raw images are of odd width.
 class OddCamera : public PlayingCamera {
  public:
   [[nodiscard]] capture::CameraDescription description() const override {
@@ -121,7 +121,7 @@ class OddCamera : public PlayingCamera {
   }
 };
 
-TEST_F(LiveCapture, RefusesRawPicturesThatCannotBePackedBeforeTheFolderIsMade) {
+TEST_F(LiveCapture, RefusesRawImagesThatCannotBePackedBeforeTheFolderIsMade) {
   try {
     app::capture_session(std::make_unique<OddCamera>(), options_, context_);
     FAIL() << "nothing was thrown";
@@ -133,7 +133,7 @@ TEST_F(LiveCapture, RefusesRawPicturesThatCannotBePackedBeforeTheFolderIsMade) {
   EXPECT_FALSE(std::filesystem::exists(options_.session));
 }
 
-/// Somebody presses Ctrl-C when picture 10 is due.
+/// Somebody presses Ctrl-C when image 10 is due.
 class InterruptedCamera : public PlayingCamera {
  public:
   std::optional<capture::CameraBuffer> next(std::chrono::milliseconds timeout) override {
@@ -159,7 +159,7 @@ TEST_F(LiveCapture, EndsAfterTheTimeThatWasAskedFor) {
   options_.frames.reset();
   options_.seconds = 0.5;
   app::capture_session(std::make_unique<PlayingCamera>(), options_, context_);
-  // The last is the first 15/30 s after picture 7, which is 22; of these 16 the camera loses 9 and
+  // The last is the first 15/30 s after image 7, which is 22; of these 16 the camera loses 9 and
   // 19.
   EXPECT_EQ(report()["recording"]["recorded"], 14);
 }

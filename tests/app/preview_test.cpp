@@ -44,7 +44,7 @@ TEST(OrbitCamera, PosesAreRigidAndUpright) {
   }
 }
 
-TEST(OrbitCamera, DraggingByThePicturesHeightTurnsHalfRound) {
+TEST(OrbitCamera, DraggingByTheImagesHeightTurnsHalfRound) {
   OrbitCamera camera = camera_round_a_sphere();
   const Eigen::Vector3d before = eye_of(camera);
   camera.orbit({400, 0}, 400);

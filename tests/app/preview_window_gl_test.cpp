@@ -47,14 +47,14 @@ class ViewerWindow : public ::testing::Test {
   void press(const std::string& key) { display_->act({"key", "--clearmodifiers", key}); }
 
   // What the window shows, by its own snapshot.
-  cv::Mat picture() {
+  cv::Mat image() {
     window_->obey(Command::snapshot);
     window_->redraw(0);
-    return window_->picture().clone();
+    return window_->image().clone();
   }
   // Share of the pixels of the view's middle that are not background.
   double filled() {
-    const cv::Mat all = picture();
+    const cv::Mat all = image();
     const cv::Mat middle =
         all(cv::Rect(all.cols / 4, all.rows / 4, all.cols / 4, all.rows / 2)).clone();
     cv::Mat bright;

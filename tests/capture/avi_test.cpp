@@ -16,7 +16,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-std::vector<Bytes> pictures(int count) {
+std::vector<Bytes> images(int count) {
   std::vector<Bytes> result;
   for (int i = 0; i < count; ++i) result.push_back(recorded_jpeg(i));
   return result;
@@ -50,9 +50,9 @@ INSTANTIATE_TEST_SUITE_P(Bytes, AviOfSegments,
 TEST_P(AviOfSegments, ComesBackBitForBit) {
   const ScratchFolder scratch;
   const auto path = scratch.path() / "v.avi";
-  const auto expected = pictures(40);
+  const auto expected = images(40);
   AviWriter writer(path, kRecordedSize, 30, GetParam());
-  for (const Bytes& picture : expected) ASSERT_EQ(writer.append(picture), 0);
+  for (const Bytes& image : expected) ASSERT_EQ(writer.append(image), 0);
   EXPECT_EQ(read_all(path), expected) << "open";
   EXPECT_FALSE(AviReader::open(path)->header().frames);
   ASSERT_EQ(writer.close(), 0);
@@ -68,12 +68,12 @@ TEST_P(AviOfSegments, IsReadByFfmpeg) {
   const ScratchFolder scratch;
   const auto path = scratch.path() / "v.avi";
   AviWriter writer(path, kRecordedSize, 25, GetParam());
-  for (const Bytes& picture : pictures(40)) ASSERT_EQ(writer.append(picture), 0);
+  for (const Bytes& image : images(40)) ASSERT_EQ(writer.append(image), 0);
   const auto expect_frames = [&] {
     cv::VideoCapture capture(path.string(), cv::CAP_FFMPEG);
-    cv::Mat picture;
+    cv::Mat image;
     int frames = 0;
-    for (; capture.read(picture); ++frames) EXPECT_EQ(recorded_index(picture), frames);
+    for (; capture.read(image); ++frames) EXPECT_EQ(recorded_index(image), frames);
     EXPECT_EQ(frames, 40);
     EXPECT_EQ(capture.get(cv::CAP_PROP_FPS), 25);
   };
@@ -109,14 +109,14 @@ TEST(Avi, OfFfmpegIsReadAsFfmpegReadsIt) {
   EXPECT_FALSE(source->next());
 }
 
-TEST(Avi, CutAnywhereGivesThePicturesBeforeTheCut) {
+TEST(Avi, CutAnywhereGivesTheImagesBeforeTheCut) {
   const ScratchFolder scratch;
   const auto path = scratch.path() / "v.avi";
-  const auto expected = pictures(20);
+  const auto expected = images(20);
   AviWriter writer(path, kRecordedSize, 30);
-  std::vector<std::uint64_t> ends;  // of the file after each picture
-  for (const Bytes& picture : expected) {
-    ASSERT_EQ(writer.append(picture), 0);
+  std::vector<std::uint64_t> ends;  // of the file after each image
+  for (const Bytes& image : expected) {
+    ASSERT_EQ(writer.append(image), 0);
     ends.push_back(std::filesystem::file_size(path));
   }
   const Bytes whole = file_bytes(path);
@@ -126,7 +126,7 @@ TEST(Avi, CutAnywhereGivesThePicturesBeforeTheCut) {
     const std::size_t length = random() % (whole.size() + 1);
     Bytes bytes(whole.begin(), whole.begin() + static_cast<long>(length));
     // What a crash may leave behind the cut: nothing, zeros, or whatever was on the disk. The last
-    // picture's padding byte is not missed.
+    // image's padding byte is not missed.
     if (i % 3 == 1) bytes.resize(bytes.size() + 300, 0);
     if (i % 3 == 2) {
       for (int k = 0; k < 300; ++k)
@@ -148,7 +148,7 @@ TEST(Avi, SurvivesAnyBytes) {
   const auto path = scratch.path() / "v.avi";
   {
     AviWriter writer(path, kRecordedSize, 30, 6000);
-    for (const Bytes& picture : pictures(20)) ASSERT_EQ(writer.append(picture), 0);
+    for (const Bytes& image : images(20)) ASSERT_EQ(writer.append(image), 0);
     ASSERT_EQ(writer.close(), 0);
   }
   const Bytes whole = file_bytes(path);
@@ -163,7 +163,7 @@ TEST(Avi, SurvivesAnyBytes) {
     }
     write_bytes(spoilt_path, bytes);
     std::size_t total = 0;
-    for (const Bytes& picture : read_all(spoilt_path)) total += picture.size();
+    for (const Bytes& image : read_all(spoilt_path)) total += image.size();
     EXPECT_LE(total, bytes.size());  // nothing is read twice or made up
   }
 }
@@ -175,14 +175,14 @@ TEST(Avi, IsNotWrittenOverAnother) {
   EXPECT_EQ(file_bytes(path).size(), 8U);
 }
 
-TEST(MotionJpeg, LeavesDamagedPicturesOut) {
+TEST(MotionJpeg, LeavesDamagedImagesOut) {
   const ScratchFolder scratch;
   const auto path = scratch.path() / "v.avi";
   AviWriter writer(path, kRecordedSize, 30);
   for (int i = 0; i < 10; ++i) {
-    Bytes picture = recorded_jpeg(i);
-    if (i % 3 == 0) picture.resize(picture.size() / 2);
-    ASSERT_EQ(writer.append(picture), 0);
+    Bytes image = recorded_jpeg(i);
+    if (i % 3 == 0) image.resize(image.size() / 2);
+    ASSERT_EQ(writer.append(image), 0);
   }
   ASSERT_EQ(writer.close(), 0);
   const auto source = open_video(path, kRecordedSize, {}, std::nullopt);

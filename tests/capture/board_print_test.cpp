@@ -18,7 +18,7 @@ namespace {
 constexpr double kDotsPerInch = 200;
 constexpr double kPixelsPerMm = kDotsPerInch / 25.4;
 
-/// The pages of a PDF as grey pictures, drawn by poppler; empty without it.
+/// The pages of a PDF as grey images, drawn by poppler; empty without it.
 std::vector<cv::Mat> draw_pages(const std::filesystem::path& pdf, std::size_t count) {
   const auto prefix = pdf.parent_path() / "page";
   const std::string command = "pdftoppm -gray -r " + std::to_string(kDotsPerInch) + " '" +

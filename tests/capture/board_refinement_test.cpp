@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The tags' places from the pictures: displaced tags found again from projected corners.
+// The tags' places from the images: displaced tags found again from projected corners.
 #include "capture/pose/board_refinement.h"
 
 #include "tests/capture/rendered_board.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Calibration: known lenses found again, and views refused that cannot tell.
 #include "capture/calibration/calibrate_camera.h"
-#include "capture/calibration/calibration_pictures.h"
-#include "capture/calibration/camera_pictures.h"
-#include "capture/calibration/coverage_picture.h"
+#include "capture/calibration/calibration_images.h"
+#include "capture/calibration/camera_images.h"
+#include "capture/calibration/coverage_image.h"
 #include "tests/capture/expect_bad_input.h"
 #include "tests/capture/rendered_board.h"
 #include "tests/capture/scratch_folder.h"
@@ -25,9 +25,9 @@ namespace sheen::capture::test {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr PictureSize kSize{1280, 720};
+constexpr ImageSize kSize{1280, 720};
 
-/// The corners of a grid of tags as a camera sees them, those outside the picture left out.
+/// The corners of a grid of tags as a camera sees them, those outside the image left out.
 TargetView view_of(const Board& board, const core::CameraModel& camera,
                    const Eigen::Isometry3d& camera_from_board, int index) {
   TargetView view;
@@ -40,13 +40,13 @@ TargetView view_of(const Board& board, const core::CameraModel& camera,
         continue;
       }
       view.on_target.push_back(on_board[c]);
-      view.in_picture.push_back(p);
+      view.in_image.push_back(p);
     }
   }
   return view;
 }
 
-/// Views from all sides, near enough to fill the picture.
+/// Views from all sides, near enough to fill the image.
 std::vector<TargetView> good_views(const core::CameraModel& camera, int count, double noise_px,
                                    unsigned seed) {
   const Board board = make_grid_board("tag36h11", 8, 6, 0.03, 0.0375);
@@ -57,7 +57,7 @@ std::vector<TargetView> good_views(const core::CameraModel& camera, int count, d
     const auto pose = look_at_board(0.22 + 0.04 * (i % 4), (50 + 13 * (i % 3)) * kDegree,
                                     2 * std::numbers::pi * i * 0.381966);
     views.push_back(view_of(board, camera, pose, i));
-    for (Eigen::Vector2d& p : views.back().in_picture) {
+    for (Eigen::Vector2d& p : views.back().in_image) {
       p += Eigen::Vector2d(noise(random), noise(random));
     }
   }
@@ -111,7 +111,7 @@ TEST(Calibration, LeavesOutAViewThatIsFarWorse) {
   auto views = good_views(truth, 14, 0.1, 6);
   std::mt19937 random(7);
   std::normal_distribution<double> noise(0, 5);
-  for (Eigen::Vector2d& p : views[4].in_picture) p += Eigen::Vector2d(noise(random), noise(random));
+  for (Eigen::Vector2d& p : views[4].in_image) p += Eigen::Vector2d(noise(random), noise(random));
   const auto found = calibrate_camera(views, kSize);
   ASSERT_TRUE(found);
   EXPECT_EQ(found->dropped, std::vector<int>{4});
@@ -131,7 +131,7 @@ TEST(Calibration, RefusesTooFewViews) {
   EXPECT_FALSE(calibrate_camera(good_views(truth, 2, 0.1, 8), kSize));
   const auto found = calibrate_camera(good_views(truth, 5, 0.1, 8), kSize);
   ASSERT_TRUE(found);
-  EXPECT_TRUE(has_fault(find_faults(*found, {}), "only 5 pictures"));
+  EXPECT_TRUE(has_fault(find_faults(*found, {}), "only 5 images"));
 }
 
 TEST(Calibration, RefusesViewsThatAreAllAlike) {
@@ -143,7 +143,7 @@ TEST(Calibration, RefusesViewsThatAreAllAlike) {
   std::vector<TargetView> views;
   for (int i = 0; i < 12; ++i) {
     views.push_back(view_of(board, truth, look_at_board(0.3, 88 * kDegree, 0.02 * i), i));
-    for (Eigen::Vector2d& p : views.back().in_picture) {
+    for (Eigen::Vector2d& p : views.back().in_image) {
       p += Eigen::Vector2d(noise(random), noise(random));
     }
   }
@@ -151,7 +151,7 @@ TEST(Calibration, RefusesViewsThatAreAllAlike) {
   EXPECT_TRUE(!found || has_fault(find_faults(*found, {}), "too alike"));
 }
 
-TEST(Calibration, RefusesViewsThatLeaveThePictureEmpty) {
+TEST(Calibration, RefusesViewsThatLeaveTheImageEmpty) {
   const auto truth = make_camera(kSize.width_px, kSize.height_px, true);
   const Board board = make_grid_board("tag36h11", 3, 3, 0.02, 0.025);
   std::vector<TargetView> views;
@@ -161,7 +161,7 @@ TEST(Calibration, RefusesViewsThatLeaveThePictureEmpty) {
   }
   const auto found = calibrate_camera(views, kSize);
   ASSERT_TRUE(found);
-  EXPECT_TRUE(has_fault(find_faults(*found, {}), "of the picture"));
+  EXPECT_TRUE(has_fault(find_faults(*found, {}), "of the image"));
 }
 
 TEST(Calibration, RefusesAnotherTargetThanTheOneGiven) {
@@ -207,15 +207,15 @@ TEST(TargetFinder, MeasuresAChessboardAndABoardAlike) {
     }
   }
   const cv::Matx33d H(0.62, 0.11, 60, -0.08, 0.66, 90, 1e-4, 6e-5, 1);
-  cv::Mat picture;
+  cv::Mat image;
   cv::GaussianBlur(print, print, {}, 1.2);  // no aliasing after the shrinking
-  cv::warpPerspective(print, picture, H, {640, 480}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, 230);
+  cv::warpPerspective(print, image, H, {640, 480}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, 230);
   const auto finder = make_target_finder(Chessboard{9, 6, 0.025});
-  const auto view = finder->find(picture);
+  const auto view = finder->find(image);
   ASSERT_TRUE(view);
-  ASSERT_EQ(view->in_picture.size(), 54U);
+  ASSERT_EQ(view->in_image.size(), 54U);
   // The order may begin at either end of the board; every corner is near its own place.
-  for (const Eigen::Vector2d& seen : view->in_picture) {
+  for (const Eigen::Vector2d& seen : view->in_image) {
     double nearest = 1e9;
     for (int row = 1; row <= 6; ++row) {
       for (int column = 1; column <= 9; ++column) {
@@ -232,36 +232,36 @@ TEST(TargetFinder, MeasuresAChessboardAndABoardAlike) {
   EXPECT_THROW(make_target_finder(Chessboard{2, 6, 0.025}), std::invalid_argument);
 }
 
-TEST(CalibrationPictures, TakesAFolderByNameAndRefusesMixedSizes) {
+TEST(CalibrationImages, TakesAFolderByNameAndRefusesMixedSizes) {
   const ScratchFolder folder;
   const auto write = [&](const char* name, int width) {
     cv::imwrite((folder.path() / name).string(), cv::Mat(120, width, CV_8UC3, cv::Scalar(9, 9, 9)));
   };
-  expect_bad_input([&] { open_calibration_pictures(folder.path()); }, "holds no pictures");
-  expect_bad_input([&] { open_calibration_pictures(folder.path() / "none"); }, "no such video");
+  expect_bad_input([&] { open_calibration_images(folder.path()); }, "holds no images");
+  expect_bad_input([&] { open_calibration_images(folder.path() / "none"); }, "no such video");
   write("b.png", 160);
   write("a.JPG", 160);
-  folder.write("notes.txt", "not a picture");
-  const auto two = open_calibration_pictures(folder.path());
+  folder.write("notes.txt", "not an image");
+  const auto two = open_calibration_images(folder.path());
   EXPECT_EQ(two->frame_count(), 2);
   EXPECT_EQ(two->next()->index, 0);
   EXPECT_EQ(two->next()->index, 1);
   EXPECT_FALSE(two->next());
   write("c.png", 170);
-  const auto mixed = open_calibration_pictures(folder.path());
+  const auto mixed = open_calibration_images(folder.path());
   mixed->next();
   mixed->next();
   expect_bad_input([&] { mixed->next(); }, "c.png");
-  const auto broken = folder.write("0.png", "no picture at all");
-  expect_bad_input([&] { open_calibration_pictures(folder.path())->next(); }, "0.png");
+  const auto broken = folder.write("0.png", "no image at all");
+  expect_bad_input([&] { open_calibration_images(folder.path())->next(); }, "0.png");
   const auto video = folder.write("walk.mp4", "no video");
-  expect_bad_input([&] { open_calibration_pictures(video); }, "walk.mp4");
+  expect_bad_input([&] { open_calibration_images(video); }, "walk.mp4");
 }
 
-/// A camera that delivers one grey picture 30 times a second, for ever or up to a number.
+/// A camera that delivers one grey image 30 times a second, for ever or up to a number.
 class SteadyCamera : public Camera {
  public:
-  SteadyCamera(PixelFormat format, int pictures) : format_(format), left_(pictures) {
+  SteadyCamera(PixelFormat format, int images) : format_(format), left_(images) {
     const std::size_t size = format == PixelFormat::nv12 ? 64 * 48 * 3 / 2 : 64 * 48 * 2;
     bytes_.assign(size, 128);
   }
@@ -289,11 +289,11 @@ class SteadyCamera : public Camera {
   std::vector<std::uint8_t> bytes_;
 };
 
-TEST(CameraPictures, TakesThreeASecondUntilTheTimeIsOver) {
+TEST(CameraImages, TakesThreeASecondUntilTheTimeIsOver) {
   for (const PixelFormat format : {PixelFormat::yuyv, PixelFormat::nv12}) {
-    const auto pictures = open_camera_pictures(std::make_unique<SteadyCamera>(format, 1000), 4);
+    const auto images = open_camera_images(std::make_unique<SteadyCamera>(format, 1000), 4);
     int count = 0;
-    while (const auto frame = pictures->next()) {
+    while (const auto frame = images->next()) {
       EXPECT_EQ(frame->image.size(), cv::Size(64, 48));
       EXPECT_EQ(frame->index, count);
       EXPECT_NEAR(frame->time_s, count / 3.0, 0.02);
@@ -303,24 +303,22 @@ TEST(CameraPictures, TakesThreeASecondUntilTheTimeIsOver) {
   }
 }
 
-TEST(CameraPictures, EndsClearlyWhenTheCameraFallsSilent) {
-  const auto pictures =
-      open_camera_pictures(std::make_unique<SteadyCamera>(PixelFormat::yuyv, 1), 4);
-  EXPECT_TRUE(pictures->next());
-  EXPECT_THROW(pictures->next(), core::Error);
-  // Bytes that are no picture are passed over, as a damaged one is.
-  EXPECT_THROW(
-      open_camera_pictures(std::make_unique<SteadyCamera>(PixelFormat::mjpeg, 5), 4)->next(),
-      core::Error);
+TEST(CameraImages, EndsClearlyWhenTheCameraFallsSilent) {
+  const auto images = open_camera_images(std::make_unique<SteadyCamera>(PixelFormat::yuyv, 1), 4);
+  EXPECT_TRUE(images->next());
+  EXPECT_THROW(images->next(), core::Error);
+  // Bytes that are no image are passed over, as a damaged one is.
+  EXPECT_THROW(open_camera_images(std::make_unique<SteadyCamera>(PixelFormat::mjpeg, 5), 4)->next(),
+               core::Error);
 }
 
-TEST(CoveragePicture, ShadesOnlyCellsWithoutPoints) {
+TEST(CoverageImage, ShadesOnlyCellsWithoutPoints) {
   const auto truth = make_camera(kSize.width_px, kSize.height_px, true);
   const auto found = calibrate_camera(good_views(truth, 14, 0.1, 12), kSize);
   ASSERT_TRUE(found);
-  const cv::Mat picture = draw_coverage(*found);
+  const cv::Mat image = draw_coverage(*found);
   cv::Mat shaded;
-  cv::inRange(picture, cv::Scalar(205, 222, 246), cv::Scalar(205, 222, 246), shaded);
+  cv::inRange(image, cv::Scalar(205, 222, 246), cv::Scalar(205, 222, 246), shaded);
   // The frame's area less the cells with points, thin lines and points aside.
   const double frame_area = 960.0 * 540;
   EXPECT_NEAR(cv::countNonZero(shaded) / frame_area, 1 - found->coverage, 0.03);

@@ -15,23 +15,23 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr PictureSize kSize{96, 64};
+constexpr ImageSize kSize{96, 64};
 
-/// A smooth coloured picture: what a lens delivers.
-cv::Mat smooth_picture() {
+/// A smooth coloured image: what a lens delivers.
+cv::Mat smooth_image() {
   cv::Mat light(kSize.height_px, kSize.width_px, CV_32FC3);
   cv::RNG random(7);
   random.fill(light, cv::RNG::UNIFORM, 0, 1);
   cv::GaussianBlur(light, light, {}, 16);
   cv::normalize(light, light, 40, 215, cv::NORM_MINMAX);
-  cv::Mat picture;
-  light.convertTo(picture, CV_8UC3);
-  return picture;
+  cv::Mat image;
+  light.convertTo(image, CV_8UC3);
+  return image;
 }
 
-Bytes jpeg_of(const cv::Mat& picture) {
+Bytes jpeg_of(const cv::Mat& image) {
   Bytes jpeg;
-  cv::imencode(".jpg", picture, jpeg, {cv::IMWRITE_JPEG_QUALITY, 92});
+  cv::imencode(".jpg", image, jpeg, {cv::IMWRITE_JPEG_QUALITY, 92});
   return jpeg;
 }
 
@@ -52,7 +52,7 @@ Bytes without_segments(const Bytes& jpeg, std::uint8_t marker) {
 }
 
 TEST(JpegDecoder, AgreesWithOpenCv) {
-  const Bytes jpeg = jpeg_of(smooth_picture());
+  const Bytes jpeg = jpeg_of(smooth_image());
   cv::Mat ours;
   ASSERT_TRUE(decode_jpeg(jpeg, kSize, ours));
   // Both are libjpeg's decoder with its interpolated chroma: the same pixels, up to one rounding of
@@ -62,7 +62,7 @@ TEST(JpegDecoder, AgreesWithOpenCv) {
 
 TEST(JpegDecoder, TakesTheStandardTablesWhereACameraLeavesThemOut) {
   // OpenCV writes the standard's Huffman tables, so that leaving them out changes nothing.
-  const Bytes whole = jpeg_of(smooth_picture());
+  const Bytes whole = jpeg_of(smooth_image());
   const Bytes bare = without_segments(whole, 0xc4);
   ASSERT_LT(bare.size() + 400, whole.size());  // the four tables take 420 bytes
   cv::Mat expected, decoded;
@@ -71,11 +71,11 @@ TEST(JpegDecoder, TakesTheStandardTablesWhereACameraLeavesThemOut) {
   EXPECT_EQ(cv::norm(expected, decoded, cv::NORM_INF), 0);
 }
 
-TEST(JpegDecoder, LetsNoPictureChangeTheNext) {
-  // Tables of a picture with its own must not be used for one without any.
+TEST(JpegDecoder, LetsNoImageChangeTheNext) {
+  // Tables of an image with its own must not be used for one without any.
   Bytes optimised;
-  cv::imencode(".jpg", smooth_picture(), optimised, {cv::IMWRITE_JPEG_OPTIMIZE, 1});
-  const Bytes bare = without_segments(jpeg_of(smooth_picture()), 0xc4);
+  cv::imencode(".jpg", smooth_image(), optimised, {cv::IMWRITE_JPEG_OPTIMIZE, 1});
+  const Bytes bare = without_segments(jpeg_of(smooth_image()), 0xc4);
   cv::Mat alone, after;
   ASSERT_TRUE(decode_jpeg(bare, kSize, alone));
   ASSERT_TRUE(decode_jpeg(optimised, kSize, after));
@@ -84,56 +84,56 @@ TEST(JpegDecoder, LetsNoPictureChangeTheNext) {
 }
 
 TEST(JpegDecoder, UsesItsMemoryAgain) {
-  const Bytes jpeg = jpeg_of(smooth_picture());
-  cv::Mat picture;
-  ASSERT_TRUE(decode_jpeg(jpeg, kSize, picture));
-  const auto* const memory = picture.data;
-  ASSERT_TRUE(decode_jpeg(jpeg, kSize, picture));
-  EXPECT_EQ(picture.data, memory);
+  const Bytes jpeg = jpeg_of(smooth_image());
+  cv::Mat image;
+  ASSERT_TRUE(decode_jpeg(jpeg, kSize, image));
+  const auto* const memory = image.data;
+  ASSERT_TRUE(decode_jpeg(jpeg, kSize, image));
+  EXPECT_EQ(image.data, memory);
 }
 
 TEST(JpegDecoder, TakesPaddingButNoDamage) {
-  const Bytes jpeg = jpeg_of(smooth_picture());
-  cv::Mat picture;
+  const Bytes jpeg = jpeg_of(smooth_image());
+  cv::Mat image;
   Bytes padded = jpeg;
   padded.resize(jpeg.size() + 512, 0);
-  EXPECT_TRUE(decode_jpeg(padded, kSize, picture));
+  EXPECT_TRUE(decode_jpeg(padded, kSize, image));
 
   for (const std::size_t length : {std::size_t{0}, std::size_t{1}, std::size_t{20}, jpeg.size() / 4,
                                    jpeg.size() / 2, jpeg.size() - 20}) {
-    EXPECT_FALSE(decode_jpeg(std::span(jpeg).first(length), kSize, picture)) << length;
+    EXPECT_FALSE(decode_jpeg(std::span(jpeg).first(length), kSize, image)) << length;
   }
-  EXPECT_FALSE(decode_jpeg(jpeg, {kSize.width_px, kSize.height_px + 1}, picture));
-  EXPECT_FALSE(decode_jpeg(Bytes(5000, 0), kSize, picture));
+  EXPECT_FALSE(decode_jpeg(jpeg, {kSize.width_px, kSize.height_px + 1}, image));
+  EXPECT_FALSE(decode_jpeg(Bytes(5000, 0), kSize, image));
   EXPECT_EQ(jpeg_size(jpeg), kSize);
   EXPECT_FALSE(jpeg_size(Bytes(5000, 0)));
 }
 
 TEST(JpegDecoder, SurvivesAnyBytes) {
-  const Bytes jpeg = jpeg_of(smooth_picture());
+  const Bytes jpeg = jpeg_of(smooth_image());
   std::mt19937 random(11);
   int refused = 0;
   for (int i = 0; i < 400; ++i) {
     Bytes spoilt = jpeg;
     for (int k = 0; k < 4; ++k)
       spoilt[random() % spoilt.size()] = static_cast<std::uint8_t>(random());
-    cv::Mat picture;
-    if (!decode_jpeg(spoilt, kSize, picture)) {
+    cv::Mat image;
+    if (!decode_jpeg(spoilt, kSize, image)) {
       ++refused;
     } else {
-      EXPECT_EQ(picture.size(), cv::Size(kSize.width_px, kSize.height_px));
+      EXPECT_EQ(image.size(), cv::Size(kSize.width_px, kSize.height_px));
     }
   }
   EXPECT_GT(refused, 0);
 }
 
-/// `picture` as a camera would deliver it: BT.601 in limited range.
-struct RawPicture {
+/// `image` as a camera would deliver it: BT.601 in limited range.
+struct RawImage {
   Bytes bytes;
   CameraBuffer buffer;
 };
 
-RawPicture raw_of(const cv::Mat& bgr, PixelFormat format, int bytes_per_line) {
+RawImage raw_of(const cv::Mat& bgr, PixelFormat format, int bytes_per_line) {
   // Y = 16 + 219 luma, Cb and Cr = 128 + 224 times the colour difference in [-0.5, 0.5].
   cv::Mat full;
   cv::cvtColor(bgr, full, cv::COLOR_BGR2YCrCb);
@@ -147,7 +147,7 @@ RawPicture raw_of(const cv::Mat& bgr, PixelFormat format, int bytes_per_line) {
     }
     return cv::saturate_cast<std::uint8_t>(128 + sum / (2 * rows) * 224 / 255);
   };
-  RawPicture raw;
+  RawImage raw;
   const auto line = static_cast<std::size_t>(bytes_per_line);
   const bool is_yuyv = format == PixelFormat::yuyv;
   raw.bytes.resize(line * static_cast<std::size_t>(is_yuyv ? bgr.rows : bgr.rows * 3 / 2));
@@ -175,22 +175,22 @@ TEST_P(JpegEncoderOf, KeepsTheColours) {
   // Errors RMS in levels: limited range and its way back in luma and chroma, 0.33 and 0.29 each;
   // quality 95 about 0.5. Blue and red add chroma times 1.8 and 1.4 to luma: about 1.3 levels, 46
   // dB. Limited range taken for full would cost up to 16 levels, 24 dB.
-  const cv::Mat picture = smooth_picture();
-  const int tight = GetParam() == PixelFormat::yuyv ? 2 * picture.cols : picture.cols;
+  const cv::Mat image = smooth_image();
+  const int tight = GetParam() == PixelFormat::yuyv ? 2 * image.cols : image.cols;
   JpegEncoder encoder;
   for (const int padding : {0, 32}) {
-    const RawPicture raw = raw_of(picture, GetParam(), tight + padding);
+    const RawImage raw = raw_of(image, GetParam(), tight + padding);
     const Bytes jpeg = encoder.encode(raw.buffer);
     cv::Mat decoded;
     ASSERT_TRUE(decode_jpeg(jpeg, kSize, decoded));
-    EXPECT_GT(cv::PSNR(picture, decoded), 42) << padding;
+    EXPECT_GT(cv::PSNR(image, decoded), 42) << padding;
   }
 }
 
 TEST_P(JpegEncoderOf, RefusesTooFewBytes) {
-  const cv::Mat picture = smooth_picture();
-  RawPicture raw = raw_of(picture, GetParam(),
-                          GetParam() == PixelFormat::yuyv ? 2 * picture.cols : picture.cols);
+  const cv::Mat image = smooth_image();
+  RawImage raw =
+      raw_of(image, GetParam(), GetParam() == PixelFormat::yuyv ? 2 * image.cols : image.cols);
   JpegEncoder encoder;
   EXPECT_FALSE(encoder.encode(raw.buffer).empty());
   raw.buffer.bytes = raw.buffer.bytes.first(raw.bytes.size() - 1);

@@ -14,7 +14,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Frames without pictures, taken at these times.
+/// Frames without images, taken at these times.
 class Stamps final : public FrameSource {
  public:
   explicit Stamps(std::vector<double> times_s) : times_s_(std::move(times_s)) {}
@@ -55,7 +55,7 @@ TEST(PacedSource, IsNeverSoonerThanTheRecording) {
 }
 
 TEST(PacedSource, CutsGapsShort) {
-  // An hour without a picture: were it kept, this test would not end.
+  // An hour without an image: were it kept, this test would not end.
   const auto source = at_recorded_pace(std::make_unique<Stamps>(std::vector{0.0, 3600.0, 3600.01}));
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(source->next());
 }

@@ -21,8 +21,8 @@ Board stage() {
   return make_grid_board("tag36h11", 5, 4, 0.045, 0.058);
 }
 
-PoseResult estimate(const Board& board, const cv::Mat& picture, const PoseGate& gate = {}) {
-  return make_tag_pose_estimator(board, kCamera, gate)->estimate({picture, 0, 0});
+PoseResult estimate(const Board& board, const cv::Mat& image, const PoseGate& gate = {}) {
+  return make_tag_pose_estimator(board, kCamera, gate)->estimate({image, 0, 0});
 }
 
 void expect_refused(const PoseResult& result, PoseRejection reason) {
@@ -30,7 +30,7 @@ void expect_refused(const PoseResult& result, PoseRejection reason) {
   EXPECT_EQ(name_of(std::get<PoseRejection>(result)), name_of(reason));
 }
 
-// The stated accuracy of the program on clean pictures of this size: 0.3 mm and 0.03 degrees.
+// The stated accuracy of the program on clean images of this size: 0.3 mm and 0.03 degrees.
 TEST(TagPoseEstimator, FindsThePoseOfARenderedBoard) {
   std::vector<double> position_mm;
   std::vector<double> angle_deg;
@@ -57,30 +57,30 @@ TEST(TagPoseEstimator, FindsThePoseOfARenderedBoard) {
   EXPECT_LT(angle_deg[2], 0.03);
 }
 
-TEST(TagPoseEstimator, RefusesAPictureWithoutTags) {
+TEST(TagPoseEstimator, RefusesAImageWithoutTags) {
   expect_refused(estimate(stage(), cv::Mat(360, 640, CV_8UC3, cv::Scalar::all(180))),
                  PoseRejection::no_tags);
 }
 
 TEST(TagPoseEstimator, RefusesForeignTags) {
   Board foreign = make_grid_board("tag36h11", 2, 1, 0.045, 0.058);
-  const cv::Mat picture = render_board(foreign, kCamera, kPose, {});
+  const cv::Mat image = render_board(foreign, kCamera, kPose, {});
   Board board = foreign;
   board.tags.clear();
   board.tags[300] = foreign.tags[0];
-  expect_refused(estimate(board, picture), PoseRejection::no_tags);
+  expect_refused(estimate(board, image), PoseRejection::no_tags);
 }
 
 TEST(TagPoseEstimator, RefusesASingleTagWhereTwoAreAskedFor) {
   const Board one = make_grid_board("tag36h11", 1, 1, 0.09, 0.1);
-  const cv::Mat picture = render_board(one, kCamera, kPose, {});
-  expect_refused(estimate(one, picture), PoseRejection::too_few_tags);
+  const cv::Mat image = render_board(one, kCamera, kPose, {});
+  expect_refused(estimate(one, image), PoseRejection::too_few_tags);
   PoseGate gate;
   gate.min_tags = 1;
-  EXPECT_TRUE(std::holds_alternative<FramePose>(estimate(one, picture, gate)));
+  EXPECT_TRUE(std::holds_alternative<FramePose>(estimate(one, image, gate)));
 }
 
-TEST(TagPoseEstimator, RefusesASmearedPicture) {
+TEST(TagPoseEstimator, RefusesASmearedImage) {
   Board board = make_grid_board("tag36h11", 3, 2, 0.09, 0.115);
   Photograph photograph;
   photograph.motion_px = 8;

@@ -47,7 +47,7 @@ struct Errors {
 
 class PhotographsOf : public testing::TestWithParam<const char*> {
  protected:
-  /// Every fifth picture is enough for a median and keeps the test short.
+  /// Every fifth image is enough for a median and keeps the test short.
   template <typename Use>
   static void for_each_frame(const Session& session, const Use& use) {
     const auto source = open_frames(session);
@@ -179,7 +179,7 @@ TEST(HandheldVideo, DetectedPosesAgreeWithTheReference) {
   EXPECT_LT(median(errors.angle_deg), 0.15);
 }
 
-/// The dragon's pictures while the camera hardly moves: its shutter rolls, and half a metre in
+/// The dragon's images while the camera hardly moves: its shutter rolls, and half a metre in
 /// front of the board a moving camera puts it up to 38 px off. With the poses that the reference
 /// place of the dragon was found with.
 std::vector<RegistrationView> slow_views(const Session& session) {

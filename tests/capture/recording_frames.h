@@ -17,31 +17,31 @@
 
 namespace sheen::capture::test {
 
-inline constexpr PictureSize kRecordedSize{64, 48};
+inline constexpr ImageSize kRecordedSize{64, 48};
 
-/// A camera's picture, told from others by its brightness (index modulo 40), with padding up to
+/// A camera's image, told from others by its brightness (index modulo 40), with padding up to
 /// `bytes`, different for each.
 inline std::vector<std::uint8_t> recorded_jpeg(int index, std::size_t bytes = 0) {
   std::vector<std::uint8_t> jpeg;
-  const cv::Mat picture(kRecordedSize.height_px, kRecordedSize.width_px, CV_8UC3,
-                        cv::Scalar::all(20 + 5 * (index % 40)));
-  cv::imencode(".jpg", picture, jpeg, {cv::IMWRITE_JPEG_QUALITY, 95});
+  const cv::Mat image(kRecordedSize.height_px, kRecordedSize.width_px, CV_8UC3,
+                      cv::Scalar::all(20 + 5 * (index % 40)));
+  cv::imencode(".jpg", image, jpeg, {cv::IMWRITE_JPEG_QUALITY, 95});
   if (jpeg.size() % 2 == static_cast<std::size_t>(index % 2)) jpeg.push_back(0);  // odd and even
   if (jpeg.size() < bytes) jpeg.resize(bytes - bytes % 2 + static_cast<std::size_t>(index % 2), 0);
   return jpeg;
 }
 
-inline int recorded_index(const cv::Mat& picture) {
-  return static_cast<int>(std::lround((cv::mean(picture)[0] - 20) / 5));
+inline int recorded_index(const cv::Mat& image) {
+  return static_cast<int>(std::lround((cv::mean(image)[0] - 20) / 5));
 }
 
-/// Picture `index` at 30 a second.
-inline LivePicture live_picture(int index, std::size_t bytes = 0) {
+/// Image `index` at 30 a second.
+inline LiveImage live_image(int index, std::size_t bytes = 0) {
   return {std::make_shared<const std::vector<std::uint8_t>>(recorded_jpeg(index, bytes)),
           std::llround(index / 30.0 * 1e6), static_cast<std::uint32_t>(index + 5)};
 }
 
-/// What a recording needs besides pictures.
+/// What a recording needs besides images.
 inline SessionSetup recording_setup(const ScratchFolder& scratch) {
   write_board(scratch.path() / "the_board.yaml", make_grid_board("tag36h11", 2, 2, 0.04, 0.05));
   scratch.write("the_mesh.ply", "ply\n");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Registration: synthetic pictures with known truth, from random wrong starts.
+// Registration: synthetic images with known truth, from random wrong starts.
 #include "capture/registration/registration.h"
 
 #include "capture/pose/pose_estimator.h"
@@ -179,7 +179,7 @@ TEST(Registration, LooksPastAViewWithAWrongPose) {
   EXPECT_LT(photographs.shift_error_m(found->board_from_object), 0.3e-3);
 }
 
-TEST(Registration, HasNoAnswerForPicturesWithoutTheObject) {
+TEST(Registration, HasNoAnswerForImagesWithoutTheObject) {
   synthetic::SyntheticOptions options;
   options.vertices = 4000;
   Photographs photographs(options, 3);

@@ -75,7 +75,7 @@ std::vector<double> distortion(const core::CameraModel& camera) {
 }
 
 /// Undistorted positions in the plane z = 1 of the upper left corners of all pixels, one row and
-/// column more than the picture has.
+/// column more than the image has.
 std::vector<cv::Point2d> undistort_lattice(const core::CameraModel& camera) {
   std::vector<cv::Point2d> pixels;
   for (int y = 0; y <= camera.height_px(); ++y) {
@@ -88,16 +88,16 @@ std::vector<cv::Point2d> undistort_lattice(const core::CameraModel& camera) {
   return ideal;
 }
 
-void finish(cv::Mat& picture, const Photograph& photograph) {
+void finish(cv::Mat& image, const Photograph& photograph) {
   if (photograph.blur_sigma_px > 0) {
-    cv::GaussianBlur(picture, picture, {}, photograph.blur_sigma_px);
+    cv::GaussianBlur(image, image, {}, photograph.blur_sigma_px);
   }
-  if (photograph.motion_px > 0) cv::blur(picture, picture, {photograph.motion_px, 1});
+  if (photograph.motion_px > 0) cv::blur(image, image, {photograph.motion_px, 1});
   if (photograph.noise > 0) {
     cv::RNG random(photograph.seed);
-    cv::Mat noise(picture.size(), CV_32F);
+    cv::Mat noise(image.size(), CV_32F);
     random.fill(noise, cv::RNG::NORMAL, 0, photograph.noise);
-    picture += noise;
+    image += noise;
   }
 }
 
@@ -110,9 +110,9 @@ cv::Mat render_board(const Board& board, const core::CameraModel& camera,
   const std::vector<cv::Point2d> lattice = undistort_lattice(camera);
   const auto stride = static_cast<std::size_t>(camera.width_px()) + 1;
   const int n = photograph.supersampling;
-  cv::Mat picture(camera.height_px(), camera.width_px(), CV_32F);
-  for (int y = 0; y < picture.rows; ++y) {
-    for (int x = 0; x < picture.cols; ++x) {
+  cv::Mat image(camera.height_px(), camera.width_px(), CV_32F);
+  for (int y = 0; y < image.rows; ++y) {
+    for (int x = 0; x < image.cols; ++x) {
       // Distortion bends far less than a pixel within a pixel: interpolate between its corners.
       const cv::Point2d* upper =
           &lattice[static_cast<std::size_t>(y) * stride + static_cast<std::size_t>(x)];
@@ -129,13 +129,13 @@ cv::Mat render_board(const Board& board, const core::CameraModel& camera,
         if (depth > 0) black += print.is_black(board_from_camera.translation() + depth * ray);
       }
       const double share = static_cast<double>(black) / (n * n);
-      picture.at<float>(y, x) =
+      image.at<float>(y, x) =
           static_cast<float>(photograph.light + share * (photograph.dark - photograph.light));
     }
   }
-  finish(picture, photograph);
+  finish(image, photograph);
   cv::Mat grey;
-  picture.convertTo(grey, CV_8U);
+  image.convertTo(grey, CV_8U);
   cv::Mat colour;
   cv::cvtColor(grey, colour, cv::COLOR_GRAY2BGR);
   return colour;

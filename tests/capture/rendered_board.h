@@ -23,7 +23,7 @@ struct Photograph {
   int supersampling = 5;       ///< rays per pixel and axis
 };
 
-/// Picture of a board whose tags lie in the board plane, drawn from the codes that libapriltag and
+/// Image of a board whose tags lie in the board plane, drawn from the codes that libapriltag and
 /// OpenCV print, by a ray through every sub-pixel and OpenCV's own undistortion. CV_8UC3.
 cv::Mat render_board(const Board& board, const core::CameraModel& camera,
                      const Eigen::Isometry3d& camera_from_board, const Photograph& photograph);

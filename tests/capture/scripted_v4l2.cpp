@@ -21,7 +21,7 @@ bool is_jpeg(std::uint32_t fourcc) {
 
 }  // namespace
 
-std::uint32_t picture_count(const std::uint8_t* bytes, bool jpeg) {
+std::uint32_t image_count(const std::uint8_t* bytes, bool jpeg) {
   std::uint32_t count = 0;
   std::memcpy(&count, bytes + (jpeg ? 2 : 0), sizeof count);
   return count;
@@ -360,41 +360,41 @@ std::vector<std::filesystem::path> ScriptedV4l2::video_nodes() const {
   return plugged_ ? std::vector{node} : std::vector<std::filesystem::path>{};
 }
 
-ScriptedV4l2::Picture ScriptedV4l2::next_picture() const {
-  Picture picture{count_, count_, now_, 0, {}, 0, false};
+ScriptedV4l2::Image ScriptedV4l2::next_image() const {
+  Image image{count_, count_, now_, 0, {}, 0, false};
   const bool jpeg = is_jpeg(format_.pixelformat);
   const std::size_t size = jpeg                                       ? 200
                            : format_.pixelformat == V4L2_PIX_FMT_NV12 ? format_.sizeimage * 3 / 4
                                                                       : format_.sizeimage;
-  picture.bytes.assign(size, static_cast<std::uint8_t>(count_));
-  if (jpeg) std::memcpy(picture.bytes.data(), "\xff\xd8", 2);
-  std::memcpy(picture.bytes.data() + (jpeg ? 2 : 0), &count_, sizeof count_);
-  picture.bytes_used = static_cast<std::uint32_t>(size);
-  return picture;
+  image.bytes.assign(size, static_cast<std::uint8_t>(count_));
+  if (jpeg) std::memcpy(image.bytes.data(), "\xff\xd8", 2);
+  std::memcpy(image.bytes.data() + (jpeg ? 2 : 0), &count_, sizeof count_);
+  image.bytes_used = static_cast<std::uint32_t>(size);
+  return image;
 }
 
 void ScriptedV4l2::expose() {
   due_ += period;
-  Picture picture = next_picture();
+  Image image = next_image();
   ++count_;
-  if (const auto event = events.find(picture.count); event != events.end()) {
+  if (const auto event = events.find(image.count); event != events.end()) {
     const auto happen = std::move(event->second);
     events.erase(event);
     happen();
     if (!streaming_) return;
   }
-  if (spoil) spoil(picture);
-  if (picture.dropped || waiting_.empty()) return;
+  if (spoil) spoil(image);
+  if (image.dropped || waiting_.empty()) return;
 
   Buffer& buffer = buffers_[static_cast<std::size_t>(waiting_.front())];
-  std::copy_n(picture.bytes.begin(), std::min(picture.bytes.size(), buffer.memory.size()),
+  std::copy_n(image.bytes.begin(), std::min(image.bytes.size(), buffer.memory.size()),
               buffer.memory.begin());
   v4l2_buffer full{};
   full.index = static_cast<__u32>(waiting_.front());
-  full.sequence = picture.sequence;
-  full.flags = picture.flags;
-  full.bytesused = picture.bytes_used;
-  const auto micro = std::chrono::duration_cast<std::chrono::microseconds>(picture.stamp).count();
+  full.sequence = image.sequence;
+  full.flags = image.flags;
+  full.bytesused = image.bytes_used;
+  const auto micro = std::chrono::duration_cast<std::chrono::microseconds>(image.stamp).count();
   full.timestamp.tv_sec = micro / 1000000;
   full.timestamp.tv_usec = micro % 1000000;
   waiting_.pop_front();

@@ -36,8 +36,8 @@ class ScriptedV4l2 : public V4l2System {
     int value;
     std::uint32_t type = V4L2_CTRL_TYPE_INTEGER;
   };
-  /// One picture before it is handed over, for a script to spoil.
-  struct Picture {
+  /// One image before it is handed over, for a script to spoil.
+  struct Image {
     std::uint32_t count;  ///< since the device was plugged in; its first four bytes after the mark
     std::uint32_t sequence;  ///< = count
     std::chrono::nanoseconds stamp;
@@ -59,11 +59,11 @@ class ScriptedV4l2 : public V4l2System {
   std::chrono::nanoseconds period = std::chrono::milliseconds(20);
   std::uint32_t field = V4L2_FIELD_NONE;
   std::uint32_t driver_buffers = 8;  ///< the most that it lends
-  bool silent = false;               ///< streams, but no picture comes
+  bool silent = false;               ///< streams, but no image comes
 
-  /// Looks at every picture before it is handed over.
-  std::function<void(Picture&)> spoil;
-  /// Called when the picture of this count is due, before it is delivered.
+  /// Looks at every image before it is handed over.
+  std::function<void(Image&)> spoil;
+  /// Called when the image of this count is due, before it is delivered.
   std::map<std::uint32_t, std::function<void()>> events;
 
   /// The next `times` requests of this code fail.
@@ -119,7 +119,7 @@ class ScriptedV4l2 : public V4l2System {
   int get(v4l2_control& control) const;
   int set(const v4l2_control& control);
   void expose();
-  [[nodiscard]] Picture next_picture() const;
+  [[nodiscard]] Image next_image() const;
 
   std::chrono::nanoseconds now_{std::chrono::seconds(1000)};
   std::chrono::nanoseconds due_{};
@@ -139,10 +139,10 @@ class ScriptedV4l2 : public V4l2System {
   std::uint32_t count_ = 0;
 };
 
-/// The count that a picture carries: in its first four bytes, for MJPEG after the mark SOI.
-[[nodiscard]] std::uint32_t picture_count(const std::uint8_t* bytes, bool jpeg);
+/// The count that an image carries: in its first four bytes, for MJPEG after the mark SOI.
+[[nodiscard]] std::uint32_t image_count(const std::uint8_t* bytes, bool jpeg);
 
-/// Starts at once, so that the first picture of the stream is the first one dropped.
+/// Starts at once, so that the first image of the stream is the first one dropped.
 inline V4l2CameraOptions at_once() {
   V4l2CameraOptions options;
   options.lock_automatics = false;

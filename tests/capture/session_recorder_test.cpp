@@ -24,7 +24,7 @@ namespace sheen::capture::test {
 namespace {
 
 constexpr int kFps = 30;
-constexpr std::size_t kCameraBytes = 120'000;  // of a picture at 1280x720
+constexpr std::size_t kCameraBytes = 120'000;  // of an image at 1280x720
 
 /// Frames of a session; they must be those that were put in, in order and on time.
 int count_frames(const Session& session) {
@@ -33,7 +33,7 @@ int count_frames(const Session& session) {
   while (const auto frame = source->next()) {
     EXPECT_EQ(frame->index, frames);
     EXPECT_EQ(recorded_index(frame->image), frames % 40);
-    EXPECT_EQ(frame->time_s, stamp_seconds(live_picture(frames).time_us));
+    EXPECT_EQ(frame->time_s, stamp_seconds(live_image(frames).time_us));
     ++frames;
   }
   return frames;
@@ -54,15 +54,15 @@ TEST(SessionRecorder, KeepsEveryByteAndTime) {
   const ScratchFolder scratch;
   const auto folder = scratch.path() / "walk";
   SessionRecorder recorder(folder, recording_setup(scratch), kFps);
-  for (int i = 0; i < 50; ++i) ASSERT_TRUE(recorder.add(live_picture(i)));
+  for (int i = 0; i < 50; ++i) ASSERT_TRUE(recorder.add(live_image(i)));
   // Before and after the end.
-  ASSERT_EQ(recorder.wait_for(49), live_picture(49).time_us);
+  ASSERT_EQ(recorder.wait_for(49), live_image(49).time_us);
   EXPECT_EQ(count_frames(open_session(folder)), 50);
   recorder.close();
   EXPECT_EQ(count_frames(open_session(folder)), 50);
   EXPECT_FALSE(recorder.fault());
   EXPECT_FALSE(recorder.wait_for(50));
-  EXPECT_FALSE(recorder.add(live_picture(50)));
+  EXPECT_FALSE(recorder.add(live_image(50)));
 
   auto reader = AviReader::open(folder / "frames.avi");
   EXPECT_EQ(reader->header().frames, 50);
@@ -86,14 +86,14 @@ TEST(SessionRecorder, RefusesToWriteOverSomething) {
   EXPECT_FALSE(std::filesystem::exists(scratch.path() / "other"));
 }
 
-/// Records at a camera's pace, three times as fast, until it is killed; reports every picture that
+/// Records at a camera's pace, three times as fast, until it is killed; reports every image that
 /// it has handed in. Runs in a process of its own.
 [[noreturn]] void record_for_ever(const std::filesystem::path& folder, const SessionSetup& setup,
                                   int reports) {
   SessionRecorder recorder(folder, setup, kFps);
   auto due = std::chrono::steady_clock::now();
   for (int i = 0;; ++i) {
-    recorder.add(live_picture(i, kCameraBytes));
+    recorder.add(live_image(i, kCameraBytes));
     if (write(reports, "x", 1) != 1) _exit(1);
     due += std::chrono::milliseconds(1000 / (3 * kFps));
     std::this_thread::sleep_until(due);  // the camera's pace, nobody relies on it
@@ -120,7 +120,7 @@ TEST(SessionRecorder, LosesLessThanASecondToAKill) {
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
     close(ends[0]);
-    // Less than a second of pictures; more than were reported may have come.
+    // Less than a second of images; more than were reported may have come.
     EXPECT_GT(count_frames(open_session(folder)), handed_in - kFps) << "attempt " << attempt;
   }
 }
@@ -130,7 +130,7 @@ TEST(SessionRecorder, OpensWhateverTheEndLooksLike) {
   const auto folder = scratch.path() / "walk";
   {
     SessionRecorder recorder(folder, recording_setup(scratch), kFps);
-    for (int i = 0; i < 30; ++i) ASSERT_TRUE(recorder.add(live_picture(i)));
+    for (int i = 0; i < 30; ++i) ASSERT_TRUE(recorder.add(live_image(i)));
     ASSERT_TRUE(recorder.wait_for(29));
     // As it is before it is closed.
     std::filesystem::copy(folder, scratch.path() / "open",
@@ -145,15 +145,15 @@ TEST(SessionRecorder, OpensWhateverTheEndLooksLike) {
   append("frames.avi", std::string(4000, '\xfe'));
   append("frames.csv", "0000,35\n" + std::string(100, '\0'));
   EXPECT_EQ(count_frames(open_session(scratch.path() / "open")), 31 - 1);
-  // Fewer stamps than pictures, then fewer pictures than stamps.
+  // Fewer stamps than images, then fewer images than stamps.
   std::filesystem::resize_file(scratch.path() / "open" / "frames.csv", 300);
   const int stamped = count_frames(open_session(scratch.path() / "open"));
   EXPECT_GT(stamped, 5);
   EXPECT_LT(stamped, 30);
   std::filesystem::resize_file(scratch.path() / "open" / "frames.avi", 8000);
-  const int pictured = count_frames(open_session(scratch.path() / "open"));
-  EXPECT_GT(pictured, 0);
-  EXPECT_LT(pictured, stamped);
+  const int with_images = count_frames(open_session(scratch.path() / "open"));
+  EXPECT_GT(with_images, 0);
+  EXPECT_LT(with_images, stamped);
 }
 
 /// While one exists no file grows beyond `bytes`: the writes fail as on a full disk.
@@ -182,38 +182,38 @@ TEST(SessionRecorder, KeepsWhatWasRecordedWhenTheDiskIsFull) {
   SessionRecorder recorder(folder, recording_setup(scratch), kFps);
   int fitted = 0;
   {
-    // Room for the headers and 7 pictures.
+    // Room for the headers and 7 images.
     const FullDisk full(5000 + 7 * (kCameraBytes + 10) + kCameraBytes / 2);
-    for (int i = 0; i < 20; ++i) recorder.add(live_picture(i, kCameraBytes));
+    for (int i = 0; i < 20; ++i) recorder.add(live_image(i, kCameraBytes));
     while (recorder.wait_for(fitted)) ++fitted;  // to the fault
     recorder.close();
   }
   EXPECT_EQ(fitted, 7);
   ASSERT_TRUE(recorder.fault());
   EXPECT_NE(std::string(recorder.fault()->what()).find("recording has stopped"), std::string::npos);
-  EXPECT_FALSE(recorder.add(live_picture(20)));
+  EXPECT_FALSE(recorder.add(live_image(20)));
   EXPECT_EQ(count_frames(open_session(folder)), 7);
 }
 
 TEST(SessionRecorder, GivesBackWhatItTookAndCouldNotWrite) {
   // The writer may be slow or fast; in any order what was taken is written or given back. Attempts
-  // go on until pictures waited behind the one that met the full disk.
+  // go on until images waited behind the one that met the full disk.
   const ScratchFolder scratch;
   const SessionSetup setup = recording_setup(scratch);
-  std::vector<LivePicture> pictures;
-  for (int i = 0; i < 20; ++i) pictures.push_back(live_picture(i, kCameraBytes));
+  std::vector<LiveImage> images;
+  for (int i = 0; i < 20; ++i) images.push_back(live_image(i, kCameraBytes));
   bool some_waited = false;
   for (int attempt = 0; attempt < 200 && !some_waited; ++attempt) {
     const auto folder = scratch.path() / std::to_string(attempt);
     SessionRecorder recorder(folder, setup, kFps);
     const FullDisk full(5000 + 7 * (kCameraBytes + 10) + kCameraBytes / 2);
     int taken = 0;
-    while (taken < 20 && recorder.add(pictures[static_cast<std::size_t>(taken)])) ++taken;
+    while (taken < 20 && recorder.add(images[static_cast<std::size_t>(taken)])) ++taken;
     int seen = 0;
     while (recorder.wait_for(seen)) ++seen;
     EXPECT_EQ(seen, 7);
-    while (const auto picture = recorder.next_unwritten()) {
-      EXPECT_EQ(picture->time_us, live_picture(seen).time_us);
+    while (const auto image = recorder.next_unwritten()) {
+      EXPECT_EQ(image->time_us, live_image(seen).time_us);
       ++seen;
     }
     EXPECT_EQ(seen, taken);
@@ -222,13 +222,13 @@ TEST(SessionRecorder, GivesBackWhatItTookAndCouldNotWrite) {
   EXPECT_TRUE(some_waited);
 }
 
-/// Delivers numbered pictures until it has none left, then only time passes.
+/// Delivers numbered images until it has none left, then only time passes.
 class CountingCamera : public Camera {
  public:
-  explicit CountingCamera(int pictures) : pictures_(pictures) {}
+  explicit CountingCamera(int images) : images_(images) {}
 
   std::optional<CameraBuffer> next(std::chrono::milliseconds /*timeout*/) override {
-    if (next_ == pictures_) return std::nullopt;
+    if (next_ == images_) return std::nullopt;
     bytes_ = recorded_jpeg(next_, kCameraBytes);
     const int index = next_++;
     return CameraBuffer{PixelFormat::mjpeg,
@@ -250,7 +250,7 @@ class CountingCamera : public Camera {
   [[nodiscard]] CameraCounts counts() const override { return {}; }
 
  private:
-  int pictures_;
+  int images_;
   int next_ = 0;
   std::vector<std::uint8_t> bytes_;
 };
@@ -298,20 +298,20 @@ TEST(CameraRecording, GoesOnWithoutTheDisk) {
     EXPECT_EQ(recording.status().recorded, 7);
   }
   EXPECT_EQ(reports, 1);
-  EXPECT_GT(frames, 7);  // the picture that met the full disk at least
+  EXPECT_GT(frames, 7);  // the image that met the full disk at least
   EXPECT_EQ(count_frames(open_session(folder)), 7);
 }
 
-TEST(CameraRecording, ReportsAFaultThatIsFoundAfterTheLastPicture) {
-  constexpr int pictures = 12;
+TEST(CameraRecording, ReportsAFaultThatIsFoundAfterTheLastImage) {
+  constexpr int images = 12;
   const ScratchFolder scratch;
   const SessionSetup setup = recording_setup(scratch);
-  // As many bytes as the pictures take, so that the index at the end finds no room.
+  // As many bytes as the images take, so that the index at the end finds no room.
   std::uintmax_t bytes = 0;
   {
     SessionRecorder recorder(scratch.path() / "first", setup, kFps);
-    for (int i = 0; i < pictures; ++i) ASSERT_TRUE(recorder.add(live_picture(i, kCameraBytes)));
-    ASSERT_TRUE(recorder.wait_for(pictures - 1));
+    for (int i = 0; i < images; ++i) ASSERT_TRUE(recorder.add(live_image(i, kCameraBytes)));
+    ASSERT_TRUE(recorder.wait_for(images - 1));
     bytes = std::filesystem::file_size(scratch.path() / "first" / "frames.avi");
   }
   const auto folder = scratch.path() / "walk";
@@ -321,19 +321,19 @@ TEST(CameraRecording, ReportsAFaultThatIsFoundAfterTheLastPicture) {
   {
     const FullDisk full(bytes);
     CameraRecording recording(
-        std::make_unique<CountingCamera>(pictures), recorder,
-        {.frames = pictures, .on_disk_fault = [&](const core::Error&) { ++reports; }});
+        std::make_unique<CountingCamera>(images), recorder,
+        {.frames = images, .on_disk_fault = [&](const core::Error&) { ++reports; }});
     const auto live = recording.frames();
     while (live->next()) ++frames;
     recording.stop();
     EXPECT_TRUE(recording.status().disk_fault);
   }
-  EXPECT_EQ(frames, pictures);
+  EXPECT_EQ(frames, images);
   EXPECT_EQ(reports, 1);
-  EXPECT_EQ(count_frames(open_session(folder)), pictures);
+  EXPECT_EQ(count_frames(open_session(folder)), images);
 }
 
-/// Runs out of memory at picture 3.
+/// Runs out of memory at image 3.
 class GreedyCamera : public CountingCamera {
  public:
   GreedyCamera() : CountingCamera(5) {}

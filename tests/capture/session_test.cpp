@@ -23,12 +23,12 @@ constexpr int kHeight = 48;
 constexpr int kFrames = 40;
 
 /// Frames are told apart by their brightness, in steps that lossy compression keeps.
-cv::Mat frame_picture(int index) {
+cv::Mat frame_image(int index) {
   return {kHeight, kWidth, CV_8UC3, cv::Scalar::all(20 + 5 * index)};
 }
 
-int index_of(const cv::Mat& picture) {
-  return static_cast<int>(std::lround((cv::mean(picture)[0] - 20) / 5));
+int index_of(const cv::Mat& image) {
+  return static_cast<int>(std::lround((cv::mean(image)[0] - 20) / 5));
 }
 
 /// A complete session in a scratch folder, with a JSON document to spoil.
@@ -58,7 +58,7 @@ class SessionFiles {
 
   void write_images(int first, int count) const {
     std::filesystem::create_directories(folder() / "images");
-    for (int i = 0; i < count; ++i) cv::imwrite(image_path(first + i).string(), frame_picture(i));
+    for (int i = 0; i < count; ++i) cv::imwrite(image_path(first + i).string(), frame_image(i));
   }
 
   [[nodiscard]] std::filesystem::path image_path(int number) const {
@@ -70,7 +70,7 @@ class SessionFiles {
     cv::VideoWriter writer((folder() / "frames.avi").string(), cv::CAP_OPENCV_MJPEG,
                            cv::VideoWriter::fourcc('M', 'J', 'P', 'G'), 25, {kWidth, kHeight});
     ASSERT_TRUE(writer.isOpened());
-    for (int i = 0; i < kFrames; ++i) writer.write(frame_picture(i));
+    for (int i = 0; i < kFrames; ++i) writer.write(frame_image(i));
     writer.release();
     document["frames"] = {{"video", "frames.avi"}};
   }
@@ -221,7 +221,7 @@ TEST(Images, AreRefusedWhereOneIsMissingBrokenOrOfAnotherSize) {
   std::filesystem::remove(files.image_path(2));
   expect_bad_input([&] { open_frames(session); }, "0002.png", "missing");
 
-  files.write("images/0002.png", "no picture");
+  files.write("images/0002.png", "no image");
   const auto source = open_frames(session);
   source->next();
   source->next();

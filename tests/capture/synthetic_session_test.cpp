@@ -157,7 +157,7 @@ TEST_F(SyntheticSession, SessionMeshMayBeCoarserThanWhatIsPhotographed) {
     fine.erase(mesh);
     coarse.erase(mesh);
   }
-  // Pictures, poses and the place on the board are those of the fine object.
+  // Images, poses and the place on the board are those of the fine object.
   EXPECT_EQ(fine, coarse);
   options.mesh_vertices = 20;
   EXPECT_THROW(options.check(), std::invalid_argument);
@@ -176,18 +176,18 @@ TEST_F(SyntheticSession, OptionsOutOfRangeAreNamed) {
 }
 
 TEST_F(SyntheticSession, MotionJpegComesBack) {
-  // Three smooth grey pictures of different detail, so that the JPEGs have different, also odd,
+  // Three smooth grey images of different detail, so that the JPEGs have different, also odd,
   // lengths. At quality 95 the steps of the DCT are at most 12 grey levels, and the high ones are
   // empty: an error of 2 levels, 42 dB, would be much.
   const fs::path path = folder_ / "v.avi";
-  const auto picture = [](int i) {
+  const auto image = [](int i) {
     cv::Mat image(48, 64, CV_8UC3, cv::Scalar::all(90));
     cv::circle(image, {20 + 8 * i, 24}, 6 + 4 * i, cv::Scalar::all(200), cv::FILLED);
     cv::GaussianBlur(image, image, {}, 3);
     return image;
   };
   MotionJpegFile video(path, {64, 48}, 30, 95);
-  for (int i = 0; i < 3; ++i) video.append(picture(i));
+  for (int i = 0; i < 3; ++i) video.append(image(i));
   video.close();
 
   cv::VideoCapture reader(path.string());
@@ -197,7 +197,7 @@ TEST_F(SyntheticSession, MotionJpegComesBack) {
   cv::Mat image;
   for (int i = 0; i < 3; ++i) {
     ASSERT_TRUE(reader.read(image));
-    EXPECT_GT(cv::PSNR(image, picture(i)), 42) << "picture " << i;
+    EXPECT_GT(cv::PSNR(image, image(i)), 42) << "image " << i;
   }
   EXPECT_FALSE(reader.read(image));
 }

@@ -276,7 +276,7 @@ TEST_F(SceneTest, HardlyAnyPixelOfTheObjectSaturates) {
   EXPECT_LT(saturated, pixels / 50);
 }
 
-TEST_F(SceneTest, PictureDoesNotDependOnThreads) {
+TEST_F(SceneTest, ImageDoesNotDependOnThreads) {
   const Photographer photographer(synthetic_camera(320, 180));
   const Exposure one = photographer.expose(*scene_, view(0.5), 2, 7, 1);
   const Exposure three = photographer.expose(*scene_, view(0.5), 2, 7, 3);

@@ -86,7 +86,7 @@ TEST_P(EveryFamily, LibraryCornersHaveTheRightOrderAndNoShift) {
   for (const Eigen::Vector2d& error : scene.errors()) EXPECT_LT(error.norm(), 1.0);
 }
 
-// Below 0.1 px, as asked; the picture is 0.23 Mpx, so libapriltag runs undecimated.
+// Below 0.1 px, as asked; the image is 0.23 Mpx, so libapriltag runs undecimated.
 TEST_P(EveryFamily, RefinedCornersAreWithinATenthOfAPixel) {
   Photograph photograph;
   photograph.noise = 2;
@@ -127,14 +127,14 @@ TEST(RefineCorners, LeavesCornersAloneWithoutEdges) {
   for (std::size_t c = 0; c < 4; ++c) EXPECT_EQ(corners[c], before[c]);
 }
 
-TEST(RefineCorners, StaysInsideThePicture) {
+TEST(RefineCorners, StaysInsideTheImage) {
   const cv::Mat grey(40, 40, CV_8U, cv::Scalar(128));
   std::array<Eigen::Vector2d, 4> corners{{{0, 39}, {39, 39}, {39, 0}, {0, 0}}};
   refine_corners(grey, make_camera(40, 40, false), 8, corners);
   EXPECT_EQ(corners[0], Eigen::Vector2d(0, 39));
 }
 
-TEST(TagDetector, FindsNothingInAnEmptyPicture) {
+TEST(TagDetector, FindsNothingInAnEmptyImage) {
   const cv::Mat grey(240, 320, CV_8U, cv::Scalar(200));
   for (const char* name : {"tag36h11", "DICT_6X6_250"}) {
     EXPECT_TRUE(TagDetector(find_tag_family(name, 1).value()).detect(grey).empty());

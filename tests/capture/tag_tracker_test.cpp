@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-cv::Mat grey_picture(const Board& board, const core::CameraModel& camera,
-                     const Eigen::Isometry3d& camera_from_board, const Photograph& photograph) {
+cv::Mat grey_image(const Board& board, const core::CameraModel& camera,
+                   const Eigen::Isometry3d& camera_from_board, const Photograph& photograph) {
   cv::Mat grey;
   cv::cvtColor(render_board(board, camera, camera_from_board, photograph), grey,
                cv::COLOR_BGR2GRAY);
@@ -61,7 +61,7 @@ std::set<int> ids_of(const std::vector<MeasuredCorner>& corners) {
   return ids;
 }
 
-/// The picture that most tests follow: 20 tags, a distorted lens, noise.
+/// The image that most tests follow: 20 tags, a distorted lens, noise.
 class TrackedStage : public testing::Test {
  protected:
   static Photograph noisy() {
@@ -85,7 +85,7 @@ TEST(TagTracker, MeasuresCornersOf24TagsToATwentiethOfAPixel) {
   Photograph photograph;
   photograph.blur_sigma_px = 0.7;
   photograph.noise = 3;
-  const cv::Mat grey = grey_picture(board, camera, truth, photograph);
+  const cv::Mat grey = grey_image(board, camera, truth, photograph);
   TagTracker tracker = make_tracker(board, camera);
   const auto pose = tracker.track(grey, disturbed(truth, 1, 0.006));
   ASSERT_TRUE(pose);
@@ -99,7 +99,7 @@ TEST(TagTracker, MeasuresCornersOf24TagsToATwentiethOfAPixel) {
 
 // What the tracker reports of its fit is what its corners say.
 TEST_F(TrackedStage, ReportsTheResidualsOfItsCorners) {
-  const auto pose = tracker_.track(grey_picture(stage(), camera_, pose_, noisy()), pose_);
+  const auto pose = tracker_.track(grey_image(stage(), camera_, pose_, noisy()), pose_);
   ASSERT_TRUE(pose);
   const auto projected = true_corners(stage(), camera_, pose->camera_from_board);
   EXPECT_NEAR(pose->reprojection_px, corner_rms_px(tracker_.corners(), projected), 1e-9);
@@ -110,7 +110,7 @@ TEST_F(TrackedStage, ReportsTheResidualsOfItsCorners) {
 TEST_F(TrackedStage, ToneCurvesDoNotMoveTheCamera) {
   Photograph photograph;
   photograph.blur_sigma_px = 1;
-  const cv::Mat linear = grey_picture(stage(), camera_, pose_, photograph);
+  const cv::Mat linear = grey_image(stage(), camera_, pose_, photograph);
   cv::Mat curve(1, 256, CV_8U);
   for (int v = 0; v < 256; ++v) {
     curve.at<unsigned char>(v) =
@@ -129,7 +129,7 @@ TEST_F(TrackedStage, ToneCurvesDoNotMoveTheCamera) {
 
 // A hand: a dark arm with bright fingers over the middle of the board.
 TEST_F(TrackedStage, PassesOverCoveredTags) {
-  cv::Mat grey = grey_picture(stage(), camera_, pose_, noisy());
+  cv::Mat grey = grey_image(stage(), camera_, pose_, noisy());
   cv::ellipse(grey, {320, 250}, {70, 120}, 20, 0, 360, cv::Scalar(70), cv::FILLED);
   for (int finger = 0; finger < 4; ++finger) {
     cv::line(grey, {280 + 25 * finger, 190}, {250 + 40 * finger, 100}, cv::Scalar(190), 14);
@@ -142,12 +142,12 @@ TEST_F(TrackedStage, PassesOverCoveredTags) {
   EXPECT_LT(angle_error_deg(pose->camera_from_board, pose_), 0.015);
 }
 
-TEST_F(TrackedStage, UsesTagsThatThePictureCuts) {
+TEST_F(TrackedStage, UsesTagsThatTheImageCuts) {
   const Eigen::Isometry3d close = look_at_board(0.2, 1.1, 0.4);
   const auto pose =
-      tracker_.track(grey_picture(stage(), camera_, close, noisy()), disturbed(close, 0.5, 0.002));
+      tracker_.track(grey_image(stage(), camera_, close, noisy()), disturbed(close, 0.5, 0.002));
   ASSERT_TRUE(pose);
-  // Some tag has corners in the picture and corners outside.
+  // Some tag has corners in the image and corners outside.
   std::map<int, int> corners;
   for (const MeasuredCorner& corner : tracker_.corners()) ++corners[corner.tag_id];
   EXPECT_TRUE(
@@ -162,7 +162,7 @@ TEST_F(TrackedStage, RefusesAPastedTagByItsCode) {
   pasted.tags[99] = pasted.tags.at(12);
   pasted.tags[99].board_from_tag.translation().x() += 0.003;
   pasted.tags.erase(12);
-  const auto pose = tracker_.track(grey_picture(pasted, camera_, pose_, noisy()), pose_);
+  const auto pose = tracker_.track(grey_image(pasted, camera_, pose_, noisy()), pose_);
   ASSERT_TRUE(pose);
   EXPECT_EQ(pose->tags, 19);
   EXPECT_FALSE(ids_of(tracker_.corners()).contains(12));
@@ -179,7 +179,7 @@ TEST(TagTracker, MeasuresBlur) {
   photograph.blur_sigma_px = 2;
   TagTracker tracker = make_tracker(board, camera);
   const auto pose =
-      tracker.track(grey_picture(board, camera, truth, photograph), disturbed(truth, 0.5, 0.002));
+      tracker.track(grey_image(board, camera, truth, photograph), disturbed(truth, 0.5, 0.002));
   ASSERT_TRUE(pose);
   EXPECT_NEAR(pose->blur_px, 5.3, 0.5);
   EXPECT_LT(corner_rms_px(tracker.corners(), true_corners(board, camera, truth)), 0.2);
@@ -192,14 +192,14 @@ TEST_F(TrackedStage, HasNoAnswerWhereTheBoardIsNot) {
   random.fill(noise, cv::RNG::UNIFORM, 0, 256);
   EXPECT_FALSE(tracker_.track(noise, pose_));
   // The board, but half a board's width away from where it is predicted.
-  const cv::Mat grey = grey_picture(stage(), camera_, pose_, noisy());
+  const cv::Mat grey = grey_image(stage(), camera_, pose_, noisy());
   EXPECT_FALSE(tracker_.track(grey, look_at_board(0.45, 1.0, 2.0)));
   // Behind the camera.
   EXPECT_FALSE(tracker_.track(grey, look_at_board(-0.45, 1.0, 0.4)));
 }
 
-TEST_F(TrackedStage, HasNoAnswerForAPictureOfAnotherSize) {
-  const cv::Mat grey = grey_picture(stage(), camera_, pose_, noisy());
+TEST_F(TrackedStage, HasNoAnswerForAImageOfAnotherSize) {
+  const cv::Mat grey = grey_image(stage(), camera_, pose_, noisy());
   EXPECT_FALSE(tracker_.track(grey(cv::Rect(0, 0, 320, 180)), pose_));
   EXPECT_FALSE(tracker_.track(cv::Mat(1, 1, CV_8U, cv::Scalar(0)), pose_));
 }
@@ -219,7 +219,7 @@ TEST_P(EveryTrackedFamily, IsFollowed) {
   board.border_bits = GetParam().border_bits;
   const core::CameraModel camera = make_camera(640, 360, true);
   const Eigen::Isometry3d truth = look_at_board(0.75, 1.1, 0.1);
-  const cv::Mat grey = grey_picture(board, camera, truth, {});
+  const cv::Mat grey = grey_image(board, camera, truth, {});
   TagTracker tracker = make_tracker(board, camera);
   const auto pose = tracker.track(grey, disturbed(truth, 0.3, 0.002));
   ASSERT_TRUE(pose);

@@ -79,7 +79,7 @@ TEST_F(TrackingEstimator, RefusesASmearedFrameAndGoesOn) {
   expect_posed(estimator_->estimate(frame_at(3, pose_at(3))), pose_at(3));
 }
 
-// The same frames give the same poses to the last bit, and a luma plane the same as its picture.
+// The same frames give the same poses to the last bit, and a luma plane the same as its image.
 TEST_F(TrackingEstimator, DependsOnTheFramesAlone) {
   const auto again = make_tag_pose_estimator(board_, camera_, {});
   for (int i = 0; i < 3; ++i) {
@@ -93,9 +93,9 @@ TEST_F(TrackingEstimator, DependsOnTheFramesAlone) {
   }
 }
 
-// A picture of another size fits no calibration: whatever comes back, nothing is read outside it,
+// An image of another size fits no calibration: whatever comes back, nothing is read outside it,
 // and the next good frame is posed.
-TEST_F(TrackingEstimator, SurvivesAPictureOfAnotherSize) {
+TEST_F(TrackingEstimator, SurvivesAImageOfAnotherSize) {
   expect_posed(estimator_->estimate(frame_at(0, pose_at(0))), pose_at(0));
   const PoseResult small =
       estimator_->estimate({cv::Mat(90, 160, CV_8UC3, cv::Scalar::all(200)), 1 / 30.0, 1});

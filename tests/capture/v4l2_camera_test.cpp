@@ -17,7 +17,7 @@ namespace {
 using namespace std::chrono_literals;
 using core::Error;
 using test::at_once;
-using test::picture_count;
+using test::image_count;
 using test::ScriptedV4l2;
 
 struct Taken {
@@ -27,30 +27,30 @@ struct Taken {
 };
 
 Taken taken(const CameraBuffer& buffer) {
-  return {picture_count(buffer.bytes.data(), buffer.format == PixelFormat::mjpeg), buffer.sequence,
+  return {image_count(buffer.bytes.data(), buffer.format == PixelFormat::mjpeg), buffer.sequence,
           buffer.time_s};
 }
 
 std::vector<Taken> take(V4l2Camera& camera, std::size_t wanted) {
-  std::vector<Taken> pictures;
+  std::vector<Taken> images;
   // A camera that never answers must fail a test, not hang it.
-  for (int attempt = 0; attempt < 1000 && pictures.size() < wanted; ++attempt)
-    if (const auto buffer = camera.next(100ms)) pictures.push_back(taken(*buffer));
-  return pictures;
+  for (int attempt = 0; attempt < 1000 && images.size() < wanted; ++attempt)
+    if (const auto buffer = camera.next(100ms)) images.push_back(taken(*buffer));
+  return images;
 }
 
-TEST(V4l2Camera, DeliversEveryPictureButTheFirstOnceAndInOrder) {
+TEST(V4l2Camera, DeliversEveryImageButTheFirstOnceAndInOrder) {
   ScriptedV4l2 system;
   V4l2Camera camera(system, at_once());
   const double start_s = std::chrono::duration<double>(system.now()).count();
-  const auto pictures = take(camera, 200);
-  ASSERT_EQ(pictures.size(), 200u);
+  const auto images = take(camera, 200);
+  ASSERT_EQ(images.size(), 200u);
   for (std::uint32_t n = 0; n < 200; ++n) {
-    // Picture 0 may be stale and is dropped; numbers start at 0 and go with the driver's.
-    EXPECT_EQ(pictures[n].count, n + 1);
-    EXPECT_EQ(pictures[n].sequence, n);
-    // Picture k is exposed k + 1 periods of 20 ms after the start; stamps have microseconds.
-    EXPECT_NEAR(pictures[n].time_s, start_s + .02 * (n + 2), 1e-6);
+    // Image 0 may be stale and is dropped; numbers start at 0 and go with the driver's.
+    EXPECT_EQ(images[n].count, n + 1);
+    EXPECT_EQ(images[n].sequence, n);
+    // Image k is exposed k + 1 periods of 20 ms after the start; stamps have microseconds.
+    EXPECT_NEAR(images[n].time_s, start_s + .02 * (n + 2), 1e-6);
   }
   EXPECT_EQ(camera.counts().lost, 0);
   EXPECT_EQ(camera.counts().damaged, 0);
@@ -104,37 +104,37 @@ TEST(V4l2Camera, SaysNothingWithinTheTimeAsked) {
   EXPECT_EQ(system.now() - before, 70ms);
 }
 
-TEST(V4l2Camera, CountsPicturesThatTheDriverLost) {
+TEST(V4l2Camera, CountsImagesThatTheDriverLost) {
   ScriptedV4l2 system;
-  system.spoil = [](ScriptedV4l2::Picture& picture) {
-    picture.dropped = picture.count == 5 || picture.count == 6 || picture.count == 9;
+  system.spoil = [](ScriptedV4l2::Image& image) {
+    image.dropped = image.count == 5 || image.count == 6 || image.count == 9;
   };
   V4l2Camera camera(system, at_once());
-  const auto pictures = take(camera, 10);
-  ASSERT_EQ(pictures.size(), 10u);
+  const auto images = take(camera, 10);
+  ASSERT_EQ(images.size(), 10u);
   EXPECT_EQ(camera.counts().lost, 3);
-  // The numbers keep the gaps: picture k has number k - 1, since picture 0 was dropped as stale.
-  for (const Taken& picture : pictures) EXPECT_EQ(picture.sequence, picture.count - 1);
+  // The numbers keep the gaps: image k has number k - 1, since image 0 was dropped as stale.
+  for (const Taken& image : images) EXPECT_EQ(image.sequence, image.count - 1);
 }
 
-TEST(V4l2Camera, AReaderThatIsTooSlowLosesPicturesAndKnowsHowMany) {
+TEST(V4l2Camera, AReaderThatIsTooSlowLosesImagesAndKnowsHowMany) {
   ScriptedV4l2 system;
   V4l2Camera camera(system, at_once());
   ASSERT_EQ(take(camera, 1).size(), 1u);
-  // One buffer of eight is held here: of the 20 pictures that are due while nobody reads, seven
+  // One buffer of eight is held here: of the 20 images that are due while nobody reads, seven
   // find a place.
   system.pause(20 * 20ms);
-  const auto pictures = take(camera, 30);
-  ASSERT_EQ(pictures.size(), 30u);
-  for (const Taken& picture : pictures) EXPECT_EQ(picture.sequence, picture.count - 1);
+  const auto images = take(camera, 30);
+  ASSERT_EQ(images.size(), 30u);
+  for (const Taken& image : images) EXPECT_EQ(image.sequence, image.count - 1);
   EXPECT_EQ(camera.counts().lost, 20 - 7);
 }
 
-/// How a driver can hand over a picture that is of no use.
+/// How a driver can hand over an image that is of no use.
 struct Spoiling {
   const char* name;
   std::uint32_t format;
-  void (*spoil)(ScriptedV4l2::Picture&);
+  void (*spoil)(ScriptedV4l2::Image&);
 };
 void PrintTo(const Spoiling& spoiling, std::ostream* out) {
   *out << spoiling.name;
@@ -145,16 +145,16 @@ class V4l2Damage : public testing::TestWithParam<Spoiling> {};
 TEST_P(V4l2Damage, IsSkippedAndCounted) {
   ScriptedV4l2 system;
   system.modes = {{GetParam().format, 64, 48, {{1, 50}}}};
-  system.spoil = [](ScriptedV4l2::Picture& picture) {
-    if (picture.count == 4 || picture.count == 7) GetParam().spoil(picture);
+  system.spoil = [](ScriptedV4l2::Image& image) {
+    if (image.count == 4 || image.count == 7) GetParam().spoil(image);
   };
   V4l2Camera camera(system, at_once());
-  const auto pictures = take(camera, 10);
-  ASSERT_EQ(pictures.size(), 10u);
-  for (const Taken& picture : pictures) {
-    EXPECT_NE(picture.count, 4u);
-    EXPECT_NE(picture.count, 7u);
-    EXPECT_EQ(picture.sequence, picture.count - 1);
+  const auto images = take(camera, 10);
+  ASSERT_EQ(images.size(), 10u);
+  for (const Taken& image : images) {
+    EXPECT_NE(image.count, 4u);
+    EXPECT_NE(image.count, 7u);
+    EXPECT_EQ(image.sequence, image.count - 1);
   }
   EXPECT_EQ(camera.counts().damaged, 2);
   EXPECT_EQ(camera.counts().lost, 0);
@@ -164,58 +164,57 @@ TEST_P(V4l2Damage, IsSkippedAndCounted) {
 
 INSTANTIATE_TEST_SUITE_P(
     Ways, V4l2Damage,
-    testing::Values(
-        Spoiling{"flagged", V4L2_PIX_FMT_YUYV,
-                 [](ScriptedV4l2::Picture& picture) { picture.flags = V4L2_BUF_FLAG_ERROR; }},
-        Spoiling{"one byte short", V4L2_PIX_FMT_YUYV,
-                 [](ScriptedV4l2::Picture& picture) { picture.bytes_used -= 1; }},
-        Spoiling{"one byte short", V4L2_PIX_FMT_NV12,
-                 [](ScriptedV4l2::Picture& picture) { picture.bytes_used -= 1; }},
-        Spoiling{"longer than its memory", V4L2_PIX_FMT_YUYV,
-                 [](ScriptedV4l2::Picture& picture) { picture.bytes_used = 0xffffffffU; }},
-        Spoiling{"empty", V4L2_PIX_FMT_MJPEG,
-                 [](ScriptedV4l2::Picture& picture) { picture.bytes_used = 0; }},
-        Spoiling{"not a JPEG", V4L2_PIX_FMT_MJPEG,
-                 [](ScriptedV4l2::Picture& picture) { picture.bytes[1] = 0; }}));
+    testing::Values(Spoiling{"flagged", V4L2_PIX_FMT_YUYV,
+                             [](ScriptedV4l2::Image& image) { image.flags = V4L2_BUF_FLAG_ERROR; }},
+                    Spoiling{"one byte short", V4L2_PIX_FMT_YUYV,
+                             [](ScriptedV4l2::Image& image) { image.bytes_used -= 1; }},
+                    Spoiling{"one byte short", V4L2_PIX_FMT_NV12,
+                             [](ScriptedV4l2::Image& image) { image.bytes_used -= 1; }},
+                    Spoiling{"longer than its memory", V4L2_PIX_FMT_YUYV,
+                             [](ScriptedV4l2::Image& image) { image.bytes_used = 0xffffffffU; }},
+                    Spoiling{"empty", V4L2_PIX_FMT_MJPEG,
+                             [](ScriptedV4l2::Image& image) { image.bytes_used = 0; }},
+                    Spoiling{"not a JPEG", V4L2_PIX_FMT_MJPEG,
+                             [](ScriptedV4l2::Image& image) { image.bytes[1] = 0; }}));
 
 TEST(V4l2Camera, GoesOnWhenTheDriversCountRunsOver) {
   ScriptedV4l2 system;
-  system.spoil = [](ScriptedV4l2::Picture& picture) { picture.sequence += 0xfffffffaU; };
+  system.spoil = [](ScriptedV4l2::Image& image) { image.sequence += 0xfffffffaU; };
   V4l2Camera camera(system, at_once());
-  const auto pictures = take(camera, 12);
-  ASSERT_EQ(pictures.size(), 12u);
-  for (std::uint32_t n = 0; n < 12; ++n) EXPECT_EQ(pictures[n].sequence, n);
+  const auto images = take(camera, 12);
+  ASSERT_EQ(images.size(), 12u);
+  for (std::uint32_t n = 0; n < 12; ++n) EXPECT_EQ(images[n].sequence, n);
   EXPECT_EQ(camera.counts().lost, 0);
 }
 
 TEST(V4l2Camera, StampsThatCannotBeTrueAreReplacedByTheClock) {
   ScriptedV4l2 system;
-  system.spoil = [](ScriptedV4l2::Picture& picture) {
-    if (picture.count % 4 == 1) picture.stamp = 0ns;             // never set
-    if (picture.count % 4 == 2) picture.stamp += 3600s;          // of another clock
-    if (picture.count % 4 == 3) picture.stamp = -picture.stamp;  // nonsense
+  system.spoil = [](ScriptedV4l2::Image& image) {
+    if (image.count % 4 == 1) image.stamp = 0ns;           // never set
+    if (image.count % 4 == 2) image.stamp += 3600s;        // of another clock
+    if (image.count % 4 == 3) image.stamp = -image.stamp;  // nonsense
   };
   V4l2Camera camera(system, at_once());
   double last_s = 0;
-  for (const Taken& picture : take(camera, 20)) {
-    EXPECT_GT(picture.time_s, last_s);
-    EXPECT_LE(picture.time_s, std::chrono::duration<double>(system.now()).count());
-    last_s = picture.time_s;
+  for (const Taken& image : take(camera, 20)) {
+    EXPECT_GT(image.time_s, last_s);
+    EXPECT_LE(image.time_s, std::chrono::duration<double>(system.now()).count());
+    last_s = image.time_s;
   }
   EXPECT_GT(last_s, 0);
 }
 
-TEST(V4l2Camera, SettlesBeforeTheFirstPicture) {
+TEST(V4l2Camera, SettlesBeforeTheFirstImage) {
   ScriptedV4l2 system;
   const auto before = system.now();
   V4l2Camera camera(system, {});
-  // 1.5 s for the automatics and .2 s for pictures exposed before they were locked.
+  // 1.5 s for the automatics and .2 s for images exposed before they were locked.
   EXPECT_GE(system.now() - before, 1700ms);
-  const auto pictures = take(camera, 1);
-  ASSERT_EQ(pictures.size(), 1u);
-  // 1.7 s are 85 pictures of 20 ms.
-  EXPECT_GE(pictures[0].count, 85u);
-  EXPECT_EQ(pictures[0].sequence, 0u);
+  const auto images = take(camera, 1);
+  ASSERT_EQ(images.size(), 1u);
+  // 1.7 s are 85 images of 20 ms.
+  EXPECT_GE(images[0].count, 85u);
+  EXPECT_EQ(images[0].sequence, 0u);
   EXPECT_EQ(camera.counts().lost, 0);
 }
 

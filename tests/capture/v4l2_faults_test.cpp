@@ -18,10 +18,10 @@ namespace {
 using namespace std::chrono_literals;
 using core::Error;
 using test::at_once;
-using test::picture_count;
+using test::image_count;
 using test::ScriptedV4l2;
 
-/// Numbers of the pictures that came while `rounds` times 100 ms passed.
+/// Numbers of the images that came while `rounds` times 100 ms passed.
 std::vector<std::uint32_t> sequences(V4l2Camera& camera, int rounds) {
   std::vector<std::uint32_t> found;
   for (int round = 0; round < rounds; ++round)
@@ -33,7 +33,7 @@ void expect_no_gap(const std::vector<std::uint32_t>& numbers) {
   for (std::size_t n = 0; n < numbers.size(); ++n) EXPECT_EQ(numbers[n], n);
 }
 
-/// One way in which a stream breaks at its tenth picture.
+/// One way in which a stream breaks at its tenth image.
 struct Break {
   const char* name;
   void (*happen)(ScriptedV4l2&);
@@ -244,7 +244,7 @@ TEST(V4l2StartRefused, WhatIsNoCameraIsBadInput) {
   EXPECT_EQ(kind_of(unknown_format, at_once()), Error::Kind::bad_input);
   ScriptedV4l2 other_size;
   V4l2CameraOptions large = at_once();
-  large.mode.size = PictureSize{4096, 2160};
+  large.mode.size = ImageSize{4096, 2160};
   EXPECT_EQ(kind_of(other_size, large), Error::Kind::bad_input);
   ScriptedV4l2 no_such_control;
   V4l2CameraOptions shutter = at_once();
@@ -252,14 +252,14 @@ TEST(V4l2StartRefused, WhatIsNoCameraIsBadInput) {
   EXPECT_EQ(kind_of(no_such_control, shutter), Error::Kind::bad_input);
 }
 
-TEST(V4l2StartRefused, InterlacedPicturesAreRefused) {
+TEST(V4l2StartRefused, InterlacedImagesAreRefused) {
   ScriptedV4l2 system;
   system.field = V4L2_FIELD_INTERLACED;
   EXPECT_THROW(V4l2Camera(system, at_once()), V4l2Error);
   EXPECT_EQ(system.open_descriptors(), 0u);
 }
 
-TEST(V4l2StartRefused, ADriverWithoutMemoryForTwoPicturesIsRefused) {
+TEST(V4l2StartRefused, ADriverWithoutMemoryForTwoImagesIsRefused) {
   ScriptedV4l2 system;
   system.driver_buffers = 1;
   EXPECT_THROW(V4l2Camera(system, at_once()), V4l2Error);

@@ -16,7 +16,7 @@ namespace {
 
 using test::ScriptedV4l2;
 
-/// What a usual webcam offers: raw pictures slowly, JPEG fast.
+/// What a usual webcam offers: raw images slowly, JPEG fast.
 std::vector<CameraMode> webcam() {
   return {{PixelFormat::yuyv, {640, 480}, 30},   {PixelFormat::yuyv, {1280, 720}, 10},
           {PixelFormat::mjpeg, {640, 480}, 30},  {PixelFormat::mjpeg, {1280, 720}, 30},
@@ -34,7 +34,7 @@ TEST(V4l2ModeChoice, FollowsItsRuleWhateverTheOrder) {
   ModeWish raw;
   raw.format = PixelFormat::yuyv;
   ModeWish small;
-  small.size = PictureSize{640, 480};
+  small.size = ImageSize{640, 480};
   ModeWish slow;
   slow.fps = 28;
   do {
@@ -48,7 +48,7 @@ TEST(V4l2ModeChoice, FollowsItsRuleWhateverTheOrder) {
 
 TEST(V4l2ModeChoice, WhatIsAskedForIsKeptOrNothingComes) {
   ModeWish wish;
-  wish.size = PictureSize{1280, 960};
+  wish.size = ImageSize{1280, 960};
   EXPECT_FALSE(choose_mode(webcam(), wish));
   wish.size.reset();
   wish.format = PixelFormat::nv12;

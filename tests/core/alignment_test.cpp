@@ -56,8 +56,8 @@ struct PlaneScene {
                (texture(static_cast<double>(point.x()), static_cast<double>(point.y())) - 0.5);
   }
 
-  /// Picture of the plane, a ray through every pixel's centre; grey of even numbers.
-  [[nodiscard]] cv::Mat picture() const {
+  /// Image of the plane, a ray through every pixel's centre; grey of even numbers.
+  [[nodiscard]] cv::Mat image() const {
     const RayCaster caster(mesh);
     const Eigen::Vector3f eye = eye_in_object(camera_from_object);
     cv::Mat image(camera.height_px(), camera.width_px(), CV_8UC3, cv::Scalar::all(128));
@@ -90,8 +90,8 @@ struct PlaneScene {
   }
 };
 
-GradientPicture gradients_of(const cv::Mat& image) {
-  GradientPicture gradients;
+GradientImage gradients_of(const cv::Mat& image) {
+  GradientImage gradients;
   gradients.look_at(image, {0, 0, image.cols, image.rows}, 0.7);
   return gradients;
 }
@@ -142,11 +142,11 @@ TEST(ProjectionDerivative, HasNoValueBehindTheCamera) {
 
 TEST(AlignPose, RecoversASmallPerturbationToATenthOfIt) {
   const PlaneScene scene;
-  const GradientPicture picture = gradients_of(scene.picture());
+  const GradientImage image = gradients_of(scene.image());
   const Eigen::Isometry3d start = perturbed(scene.camera_from_object, 0.2, 0.0005);
   // The model is perfect: every residual speaks for itself, and the start may be 1 px off.
   const auto aligned =
-      align_pose(scene.expected(), picture, scene.camera, start, {.prior_px = 1, .share = 1});
+      align_pose(scene.expected(), image, scene.camera, start, {.prior_px = 1, .share = 1});
   ASSERT_TRUE(aligned);
   const Eigen::Isometry3d error = aligned->camera_from_object * scene.camera_from_object.inverse();
   EXPECT_LT(Eigen::AngleAxisd(error.linear()).angle(), 0.1 * 0.2 * kDegree);
@@ -155,13 +155,13 @@ TEST(AlignPose, RecoversASmallPerturbationToATenthOfIt) {
   EXPECT_LT(aligned->rms_after, aligned->rms_before);
 }
 
-TEST(AlignPose, ComesNearOnACoarserPictureFirst) {
+TEST(AlignPose, ComesNearOnACoarserImageFirst) {
   // 0.2 degrees and 0.5 mm are half a pixel here: three times that is beyond the first step's limit
   // of one.
   const PlaneScene scene;
   const Eigen::Isometry3d start = perturbed(scene.camera_from_object, 0.6, 0.0015);
   ASSERT_GT(motion_px(scene, start, scene.camera_from_object), 1.0);
-  const auto aligned = align_pose(scene.expected(), gradients_of(scene.picture()), scene.camera,
+  const auto aligned = align_pose(scene.expected(), gradients_of(scene.image()), scene.camera,
                                   start, {.prior_px = 1, .share = 1});
   ASSERT_TRUE(aligned);
   EXPECT_LT(motion_px(scene, aligned->camera_from_object, scene.camera_from_object), 0.2);
@@ -170,7 +170,7 @@ TEST(AlignPose, ComesNearOnACoarserPictureFirst) {
 TEST(AlignPose, RefusesAMotionBeyondItsLimit) {
   const PlaneScene scene;
   const Eigen::Isometry3d start = perturbed(scene.camera_from_object, 0.2, 0.0005);
-  EXPECT_FALSE(align_pose(scene.expected(), gradients_of(scene.picture()), scene.camera, start,
+  EXPECT_FALSE(align_pose(scene.expected(), gradients_of(scene.image()), scene.camera, start,
                           {.prior_px = 1, .max_motion_px = 0.1}));
 }
 
@@ -178,25 +178,24 @@ TEST(AlignPose, HasNoAnswerForASurfaceWithoutTexture) {
   PlaneScene scene;
   scene.contrast = 0;
   const Eigen::Isometry3d start = perturbed(scene.camera_from_object, 0.2, 0.0005);
-  EXPECT_FALSE(
-      align_pose(scene.expected(), gradients_of(scene.picture()), scene.camera, start, {}));
+  EXPECT_FALSE(align_pose(scene.expected(), gradients_of(scene.image()), scene.camera, start, {}));
 }
 
-TEST(AlignPose, HasNoAnswerForTooFewPointsOrAnObjectOutOfThePicture) {
+TEST(AlignPose, HasNoAnswerForTooFewPointsOrAnObjectOutOfTheImage) {
   const PlaneScene scene;
-  const GradientPicture picture = gradients_of(scene.picture());
-  EXPECT_FALSE(align_pose({}, picture, scene.camera, scene.camera_from_object, {}));
+  const GradientImage image = gradients_of(scene.image());
+  EXPECT_FALSE(align_pose({}, image, scene.camera, scene.camera_from_object, {}));
   Eigen::Isometry3d behind = scene.camera_from_object;
   behind.translation().z() = -1;
-  EXPECT_FALSE(align_pose(scene.expected(), picture, scene.camera, behind, {}));
+  EXPECT_FALSE(align_pose(scene.expected(), image, scene.camera, behind, {}));
 }
 
-TEST(AlignPose, GainScalesWithThePictureAndThePoseDoesNot) {
-  // Every pixel is even, so half the picture is exact: luma, gradients and residuals halve, and
+TEST(AlignPose, GainScalesWithTheImageAndThePoseDoesNot) {
+  // Every pixel is even, so half the image is exact: luma, gradients and residuals halve, and
   // with the gain at half the minimum lies at the same pose. What differs is the floor of the
   // robust width (2 / 255 does not halve): below 0.02 px here.
   const PlaneScene scene;
-  const cv::Mat bright = scene.picture();
+  const cv::Mat bright = scene.image();
   const cv::Mat dark = bright / 2;
   const Eigen::Isometry3d start = perturbed(scene.camera_from_object, 0.2, 0.0005);
   const ExpectedPoints points = scene.expected();
@@ -209,7 +208,7 @@ TEST(AlignPose, GainScalesWithThePictureAndThePoseDoesNot) {
 
 TEST(SelectPoints, TakesTheStrongestGradientsAwayFromTheSilhouette) {
   const PlaneScene scene;
-  const GradientPicture picture = gradients_of(scene.picture());
+  const GradientImage image = gradients_of(scene.image());
   const auto neighbours = seamless_neighbours(scene.mesh);
   const std::vector<std::uint8_t> usable(scene.mesh.positions.size(), 1);
   VertexView view;
@@ -224,7 +223,7 @@ TEST(SelectPoints, TakesTheStrongestGradientsAwayFromTheSilhouette) {
         view.rejection[i] = VertexRejection::occluded;
       }
     }
-    select_points(view, neighbours, usable, picture, {.max_points = 500},
+    select_points(view, neighbours, usable, image, {.max_points = 500},
                   threads == 1 ? one_thread : four_threads);
   }
   EXPECT_EQ(one_thread, four_threads);
@@ -237,7 +236,7 @@ TEST(SelectPoints, TakesTheStrongestGradientsAwayFromTheSilhouette) {
     }
     const Eigen::Vector2d pixel(static_cast<double>(view.x_px[i]),
                                 static_cast<double>(view.y_px[i]));
-    weakest = std::min(weakest, picture.read(pixel)->gradient.norm());
+    weakest = std::min(weakest, image.read(pixel)->gradient.norm());
   }
   EXPECT_GE(weakest, 0.008);
 }
@@ -249,7 +248,7 @@ TEST(SelectPoints, TakesNothingUnusable) {
   std::vector<std::uint32_t> selected{7};
   select_points(view, seamless_neighbours(scene.mesh),
                 std::vector<std::uint8_t>(scene.mesh.positions.size(), 0),
-                gradients_of(scene.picture()), {}, selected);
+                gradients_of(scene.image()), {}, selected);
   EXPECT_TRUE(selected.empty());
 }
 
@@ -266,7 +265,7 @@ TEST(SeamlessNeighbours, CrossASeamBothWays) {
   }
 }
 
-TEST(EstimateGain, IsExactWhenThePictureIsScaled) {
+TEST(EstimateGain, IsExactWhenTheImageIsScaled) {
   // Numbers with few bits and a factor of 3/4: products and quotients are exact in binary.
   std::vector<float> predicted;
   std::vector<float> measured;

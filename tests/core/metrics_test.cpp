@@ -71,7 +71,7 @@ double naive_ssim(const cv::Mat& image, const cv::Mat& reference, const cv::Mat&
   return sum / count;
 }
 
-TEST(ImageError, OfEqualPicturesIsNone) {
+TEST(ImageError, OfEqualImagesIsNone) {
   const cv::Mat image = noise(1);
   const auto error = image_error(image, image, full_mask(image));
   ASSERT_TRUE(error);

@@ -20,10 +20,10 @@ using testing::square_grid;
 using testing::together;
 
 const CameraModel kPlain({1280, 720, {1100, 1100}, {640, 360}, {}});
-/// Bends a line across the picture by several per cent of its width.
+/// Bends a line across the image by several per cent of its width.
 const CameraModel kBent({1280, 720, {1100, 1090}, {655, 340}, {-0.3, 0.1, 2e-3, -1e-3, 0}});
 
-/// Looks at the origin from a direction; the picture's y axis points away from `up`.
+/// Looks at the origin from a direction; the image's y axis points away from `up`.
 Eigen::Isometry3d looking_from(const Eigen::Vector3d& side, double distance_m) {
   const Eigen::Vector3d forward = -side.normalized();
   const Eigen::Vector3d right = forward.cross(Eigen::Vector3d(0.1, 0.2, 1)).normalized();
@@ -179,7 +179,7 @@ TEST(RasterVisibility, FacesSeenFromBehindDoNotHide) {
 
 // A lid of two triangles whose corners lie beside, behind and beyond what the camera sees: nothing
 // under it is seen, though none of its corners has a pixel.
-TEST(RasterVisibility, TrianglesAroundTheWholePictureHide) {
+TEST(RasterVisibility, TrianglesAroundTheWholeImageHide) {
   Mesh lid = square_grid(1, 50.0f, 1.0f);
   const Mesh mesh = together(square_grid(150, 0.5f, 0.0f), lid);
   Eigen::Isometry3d pose = camera_above(2);
@@ -251,7 +251,7 @@ TEST(SamplingKernels, ProjectAsTheCameraModelDoes) {
 
 TEST(SamplingKernels, ProjectWithTheSameBitsOnEveryInstructionSet) {
   const SurfacePoints points = surface_points(sphere(31, 47));
-  // Some behind the camera, some beyond the lens model, some outside the picture.
+  // Some behind the camera, some beyond the lens model, some outside the image.
   const ProjectionSetup setup{{0.36f, 0.48f, -0.8f, -0.8f, 0.6f, 0, 0.48f, 0.64f, 0.6f},
                               {0.1f, -0.2f, 0.7f},
                               {2.4f, 3.2f, 3.0f},

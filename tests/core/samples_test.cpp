@@ -116,7 +116,7 @@ VertexView random_view(std::size_t count) {
   return view;
 }
 
-TEST(BackProjection, ReadsALinearPictureExactly) {
+TEST(BackProjection, ReadsALinearImageExactly) {
   const VertexView view = random_view(300);
   SampleBatch batch;
   back_project(ramp(), view, batch);
@@ -154,7 +154,7 @@ TEST(BackProjection, AllocatesNothingTheSecondTime) {
   EXPECT_EQ(batch.b.data(), columns[4]);
 }
 
-TEST(BackProjection, LeavesOutWhatThePictureDoesNotHold) {
+TEST(BackProjection, LeavesOutWhatTheImageDoesNotHold) {
   VertexView view = random_view(4);
   view.rejection.assign(4, VertexRejection::none);
   view.x_px = {-0.1f, 49.0f, 10.0f, 48.9f};

@@ -26,20 +26,20 @@ using tests::TemporaryFolder;
 
 using DeviceCapture = RigTest;
 
-std::vector<std::vector<std::uint8_t>> compressed_pictures(const std::filesystem::path& video) {
-  std::vector<std::vector<std::uint8_t>> pictures;
+std::vector<std::vector<std::uint8_t>> compressed_images(const std::filesystem::path& video) {
+  std::vector<std::vector<std::uint8_t>> images;
   auto reader = AviReader::open(video);
   while (reader && reader->advance()) {
     const auto bytes = reader->read();
-    pictures.emplace_back(bytes.begin(), bytes.end());
+    images.emplace_back(bytes.begin(), bytes.end());
   }
-  return pictures;
+  return images;
 }
 
-/// Runs `sheen capture` on the loopback for so many pictures, as the sample session was recorded.
-tests::ProgramRun capture(const std::string& session, int pictures) {
+/// Runs `sheen capture` on the loopback for so many images, as the sample session was recorded.
+tests::ProgramRun capture(const std::string& session, int images) {
   return run_sheen({"capture", loopback_node, "-o", session, "--like", tests::sample_session(),
-                    "--headless", "--frames", std::to_string(pictures), "--json"});
+                    "--headless", "--frames", std::to_string(images), "--json"});
 }
 
 /// The model that the capture fitted live is that of a replay of what it recorded.
@@ -63,9 +63,9 @@ TEST_F(DeviceCapture, AHeadlessCaptureGivesTheModelOfItsReplay) {
   expect_replays_to_its_model(session);
 
   // What was recorded is what was played, bit for bit and without a gap.
-  const auto recorded = compressed_pictures(session + "/frames.avi");
+  const auto recorded = compressed_images(session + "/frames.avi");
   ASSERT_EQ(recorded.size(), 60u);
-  const auto& played = recording.pictures;
+  const auto& played = recording.images;
   const auto first = std::find(played.begin(), played.end(), recorded.front()) - played.begin();
   for (std::size_t n = 0; n < recorded.size(); ++n)
     EXPECT_EQ(recorded[n], played[(static_cast<std::size_t>(first) + n) % played.size()]);
@@ -75,7 +75,7 @@ TEST_F(DeviceCapture, ACaptureGoesOnInTheSameSessionWhenTheCameraIsBack) {
   const Recording recording = sample_recording();
   const TemporaryFolder folder;
   const std::string session = folder.path() / "session";
-  // Two seconds of pictures after the settling, then none for longer than a camera may be silent.
+  // Two seconds of images after the settling, then none for longer than a camera may be silent.
   // Silence is what is tested, so time must pass; the rig's clock is simulated and passes exactly.
   std::optional<LoopbackPlayer> player(std::in_place, loopback_node, recording);
   auto cable = std::async(std::launch::async, [&] {

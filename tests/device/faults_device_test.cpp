@@ -15,12 +15,12 @@ using DeviceFaults = RigTest;
 TEST_F(DeviceFaults, DroppedBuffersAreCounted) {
   V4l2Camera camera(kernel_v4l2_system(), quick());
   set_control(converter_node, "percentage_of_dropped_buffers", 30);
-  const auto pictures = take(camera, 200);
+  const auto images = take(camera, 200);
   set_control(converter_node, "percentage_of_dropped_buffers", 0);
-  ASSERT_EQ(pictures.size(), 200u);
-  expect_times_grow(pictures);
+  ASSERT_EQ(images.size(), 200u);
+  expect_times_grow(images);
   // Every number that is missing is counted, and nothing else.
-  const auto numbers = pictures.back().sequence - pictures.front().sequence + 1;
+  const auto numbers = images.back().sequence - images.front().sequence + 1;
   EXPECT_EQ(camera.counts().lost, static_cast<int>(numbers - 200));
   // Each is dropped with probability .3: 200 / .7 - 200 = 86 lost, standard deviation 11.
   EXPECT_GT(camera.counts().lost, 86 - 5 * 11);
@@ -30,26 +30,26 @@ TEST_F(DeviceFaults, DroppedBuffersAreCounted) {
 
 TEST_F(DeviceFaults, AFlaggedBufferIsSkippedAndCounted) {
   V4l2Camera camera(kernel_v4l2_system(), quick());
-  auto pictures = take(camera, 20);
+  auto images = take(camera, 20);
   press(converter_node, "inject_v4l2_buf_flag_error");
-  for (const Taken& picture : take(camera, 40)) pictures.push_back(picture);
-  ASSERT_EQ(pictures.size(), 60u);
+  for (const Taken& image : take(camera, 40)) images.push_back(image);
+  ASSERT_EQ(images.size(), 60u);
   EXPECT_EQ(camera.counts().damaged, 1);
   EXPECT_EQ(camera.counts().lost, 0);
   EXPECT_EQ(camera.counts().reconnections, 0);
-  // One number is missing: that of the damaged picture.
-  EXPECT_EQ(pictures.back().sequence - pictures.front().sequence, 60u);
+  // One number is missing: that of the damaged image.
+  EXPECT_EQ(images.back().sequence - images.front().sequence, 60u);
 }
 
 /// A fault in mid-stream after which the camera goes on with the next number.
 void expect_goes_on_after(const std::string& control) {
   V4l2Camera camera(kernel_v4l2_system(), quick());
-  auto pictures = take(camera, 20);
+  auto images = take(camera, 20);
   press(converter_node, control);
-  for (const Taken& picture : take(camera, 60)) pictures.push_back(picture);
-  ASSERT_EQ(pictures.size(), 80u);
-  expect_numbered_without_gap(pictures);
-  expect_times_grow(pictures);
+  for (const Taken& image : take(camera, 60)) images.push_back(image);
+  ASSERT_EQ(images.size(), 80u);
+  expect_numbered_without_gap(images);
+  expect_times_grow(images);
   EXPECT_EQ(camera.counts().reconnections, 1);
 }
 
@@ -89,12 +89,12 @@ TEST_F(DeviceFaults, AStreamOnErrorAtTheStartIsOneLine) {
 
 TEST_F(DeviceFaults, AStreamOnErrorWhileItStartsAgainIsGotOver) {
   V4l2Camera camera(kernel_v4l2_system(), quick());
-  auto pictures = take(camera, 20);
+  auto images = take(camera, 20);
   press(converter_node, "inject_vidioc_streamon_error");
   press(converter_node, "inject_fatal_streaming_error");
-  for (const Taken& picture : take(camera, 60)) pictures.push_back(picture);
-  ASSERT_EQ(pictures.size(), 80u);
-  expect_numbered_without_gap(pictures);
+  for (const Taken& image : take(camera, 60)) images.push_back(image);
+  ASSERT_EQ(images.size(), 80u);
+  expect_numbered_without_gap(images);
   EXPECT_EQ(camera.counts().reconnections, 1);
 }
 
@@ -102,24 +102,24 @@ TEST_F(DeviceFaults, ACountThatRunsOverIsNoLoss) {
   // vivid then starts 128 before the end of its count.
   set_control(converter_node, "wrap_sequence_number", 1);
   V4l2Camera camera(kernel_v4l2_system(), quick());
-  const auto pictures = take(camera, 200);
+  const auto images = take(camera, 200);
   set_control(converter_node, "wrap_sequence_number", 0);
-  ASSERT_EQ(pictures.size(), 200u);
-  expect_numbered_without_gap(pictures);
+  ASSERT_EQ(images.size(), 200u);
+  expect_numbered_without_gap(images);
   EXPECT_EQ(camera.counts().lost, 0);
 }
 
 TEST_F(DeviceFaults, AClockThatRunsOverIsReplaced) {
-  // vivid then stamps pictures as if the machine had run for 2^63 ns or 2^31 s all but a moment.
+  // vivid then stamps images as if the machine had run for 2^63 ns or 2^31 s all but a moment.
   for (const int kind : {1, 2}) {
     set_control(converter_node, "wrap_timestamp", kind);
     V4l2Camera camera(kernel_v4l2_system(), quick());
-    const auto pictures = take(camera, 200);
-    ASSERT_EQ(pictures.size(), 200u);
-    expect_times_grow(pictures);
+    const auto images = take(camera, 200);
+    ASSERT_EQ(images.size(), 200u);
+    expect_times_grow(images);
     const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    EXPECT_LE(pictures.back().time_s, std::chrono::duration<double>(now).count());
-    EXPECT_GT(pictures.front().time_s, 0);
+    EXPECT_LE(images.back().time_s, std::chrono::duration<double>(now).count());
+    EXPECT_GT(images.front().time_s, 0);
   }
   set_control(converter_node, "wrap_timestamp", 0);
 }
@@ -138,15 +138,15 @@ TEST_F(DeviceFaults, ACameraInUseIsRefusedWithTheReason) {
 
 TEST_F(DeviceFaults, AnUnpluggedCameraGoesOnWhenItIsBack) {
   V4l2Camera camera(kernel_v4l2_system(), quick());
-  auto pictures = take(camera, 20);
+  auto images = take(camera, 20);
   unbind_vivid();
   // Away for 3 s, of which nothing comes.
   for (int wait = 0; wait < 30; ++wait) EXPECT_FALSE(camera.next(std::chrono::milliseconds(100)));
   bind_vivid();
-  for (const Taken& picture : take(camera, 60)) pictures.push_back(picture);
-  ASSERT_EQ(pictures.size(), 80u);
-  expect_numbered_without_gap(pictures);
-  EXPECT_GT(pictures[20].time_s - pictures[19].time_s, 3);
+  for (const Taken& image : take(camera, 60)) images.push_back(image);
+  ASSERT_EQ(images.size(), 80u);
+  expect_numbered_without_gap(images);
+  EXPECT_GT(images[20].time_s - images[19].time_s, 3);
   EXPECT_EQ(camera.counts().reconnections, 1);
 }
 

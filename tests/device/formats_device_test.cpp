@@ -17,7 +17,7 @@ using namespace test;
 using namespace std::chrono_literals;
 
 class DeviceFormats : public RigTest,
-                      public testing::WithParamInterface<std::tuple<PixelFormat, PictureSize>> {};
+                      public testing::WithParamInterface<std::tuple<PixelFormat, ImageSize>> {};
 
 /// Y of every pixel and the mean of U and V.
 struct Luma {
@@ -67,7 +67,7 @@ TEST_P(DeviceFormats, AWhiteWallIsWhite) {
 }
 
 /// For the table that scripts/test-v4l2 prints: "YUYV_640x480".
-std::string mode_name(const testing::TestParamInfo<std::tuple<PixelFormat, PictureSize>>& info) {
+std::string mode_name(const testing::TestParamInfo<std::tuple<PixelFormat, ImageSize>>& info) {
   const auto& [format, size] = info.param;
   return format_name(format) + "_" + std::to_string(size.width_px) + "x" +
          std::to_string(size.height_px);
@@ -75,7 +75,7 @@ std::string mode_name(const testing::TestParamInfo<std::tuple<PixelFormat, Pictu
 
 const auto raw_modes = testing::Combine(
     testing::Values(PixelFormat::yuyv, PixelFormat::nv12),
-    testing::Values(PictureSize{640, 480}, PictureSize{1280, 720}, PictureSize{1920, 1080}));
+    testing::Values(ImageSize{640, 480}, ImageSize{1280, 720}, ImageSize{1920, 1080}));
 
 INSTANTIATE_TEST_SUITE_P(Vivid, DeviceFormats, raw_modes, mode_name);
 
@@ -104,34 +104,34 @@ TEST_F(DeviceModes, TheLoopbackIsNoCameraUntilSomebodyPlays) {
 TEST_F(DeviceModes, TheWishedRateIsSet) {
   for (const double fps : {10., 25., 40.}) {
     V4l2CameraOptions options = quick(webcam_node);
-    options.mode.size = PictureSize{640, 360};
+    options.mode.size = ImageSize{640, 360};
     options.mode.fps = fps;
     V4l2Camera camera(kernel_v4l2_system(), options);
     EXPECT_DOUBLE_EQ(camera.description().fps, fps);
-    const auto pictures = take(camera, 11);
-    ASSERT_EQ(pictures.size(), 11u);
+    const auto images = take(camera, 11);
+    ASSERT_EQ(images.size(), 11u);
     // Ten periods; vivid wakes at ticks of 1 ms.
-    EXPECT_NEAR(pictures.back().time_s - pictures.front().time_s, 10 / fps, 2e-3);
+    EXPECT_NEAR(images.back().time_s - images.front().time_s, 10 / fps, 2e-3);
   }
 }
 
 class DeviceRate : public RigTest,
-                   public testing::WithParamInterface<std::tuple<PixelFormat, PictureSize>> {};
+                   public testing::WithParamInterface<std::tuple<PixelFormat, ImageSize>> {};
 
-TEST_P(DeviceRate, SixtyPicturesASecondWithoutAGap) {
+TEST_P(DeviceRate, SixtyImagesASecondWithoutAGap) {
   const auto [format, size] = GetParam();
   V4l2CameraOptions options = quick();
   options.mode.format = format;
   options.mode.size = size;
   V4l2Camera camera(kernel_v4l2_system(), options);
   EXPECT_NEAR(camera.description().fps, 60, .1);
-  const auto pictures = take(camera, 301);
-  ASSERT_EQ(pictures.size(), 301u);
-  expect_numbered_without_gap(pictures);
-  expect_times_grow(pictures);
+  const auto images = take(camera, 301);
+  ASSERT_EQ(images.size(), 301u);
+  expect_numbered_without_gap(images);
+  expect_times_grow(images);
   EXPECT_EQ(camera.counts().lost, 0);
   // 300 periods of 1/60 s; vivid wakes at ticks of 1 ms.
-  EXPECT_NEAR(pictures.back().time_s - pictures.front().time_s, 5, .01);
+  EXPECT_NEAR(images.back().time_s - images.front().time_s, 5, .01);
 }
 
 INSTANTIATE_TEST_SUITE_P(Vivid, DeviceRate, raw_modes, mode_name);
@@ -171,20 +171,20 @@ void expect_bit_exact(const Recording& recording, std::size_t rounds) {
   EXPECT_EQ(camera.description().width_px, recording.size.width_px);
   EXPECT_NEAR(camera.description().fps, recording.fps, 1e-9);
 
-  const std::size_t count = recording.pictures.size();
+  const std::size_t count = recording.images.size();
   std::size_t at = count;
   std::size_t exact = 0;
   for (std::size_t n = 0; n < rounds * count; ++n) {
     const auto buffer = camera.next(2000ms);
     ASSERT_TRUE(buffer);
-    const auto same = [&](const std::vector<std::uint8_t>& picture) {
-      return std::equal(picture.begin(), picture.end(), buffer->bytes.begin(), buffer->bytes.end());
+    const auto same = [&](const std::vector<std::uint8_t>& image) {
+      return std::equal(image.begin(), image.end(), buffer->bytes.begin(), buffer->bytes.end());
     };
-    // The first picture tells where in the recording the player is.
-    const auto& all = recording.pictures;
+    // The first image tells where in the recording the player is.
+    const auto& all = recording.images;
     if (n == 0)
       at = static_cast<std::size_t>(std::find_if(all.begin(), all.end(), same) - all.begin());
-    ASSERT_LT(at, count) << "the first picture is none of the recording";
+    ASSERT_LT(at, count) << "the first image is none of the recording";
     if (same(all[(at + n) % count])) ++exact;
   }
   EXPECT_EQ(exact, rounds * count);
@@ -196,17 +196,16 @@ TEST_F(DeviceLoopback, ARecordedSessionArrivesBitExact) {
   expect_bit_exact(sample_recording(), 2);
 }
 
-TEST_F(DeviceLoopback, RawPicturesAtSixtyASecondArriveBitExact) {
+TEST_F(DeviceLoopback, RawImagesAtSixtyASecondArriveBitExact) {
   Recording recording;
   recording.format = PixelFormat::yuyv;
   recording.size = {640, 480};
   recording.fps = 60;
   std::mt19937 random(5);
   for (int n = 0; n < 8; ++n) {
-    std::vector<std::uint8_t> picture(640 * 480 * 2);
-    std::generate(picture.begin(), picture.end(),
-                  [&] { return static_cast<std::uint8_t>(random()); });
-    recording.pictures.push_back(std::move(picture));
+    std::vector<std::uint8_t> image(640 * 480 * 2);
+    std::generate(image.begin(), image.end(), [&] { return static_cast<std::uint8_t>(random()); });
+    recording.images.push_back(std::move(image));
   }
   expect_bit_exact(recording, 30);
 }

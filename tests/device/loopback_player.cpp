@@ -58,7 +58,7 @@ Recording sample_recording() {
   recording.fps = reader->header().fps;
   while (reader->advance()) {
     const auto bytes = reader->read();
-    recording.pictures.emplace_back(bytes.begin(), bytes.end());
+    recording.images.emplace_back(bytes.begin(), bytes.end());
   }
   return recording;
 }
@@ -70,7 +70,7 @@ LoopbackPlayer::LoopbackPlayer(const std::string& node, Recording recording)
   if (descriptor_ == -1) throw device_fault(node_, "opening", errno);
   try {
     set_output(descriptor_, node_, recording_);
-    // With its first picture the device becomes a camera.
+    // With its first image the device becomes a camera.
     write(0);
   } catch (...) {
     ::close(descriptor_);
@@ -86,9 +86,9 @@ LoopbackPlayer::~LoopbackPlayer() {
 }
 
 void LoopbackPlayer::write(std::size_t index) {
-  const auto& picture = recording_.pictures[index];
-  if (::write(descriptor_, picture.data(), picture.size()) != static_cast<ssize_t>(picture.size()))
-    throw device_fault(node_, "writing a picture", errno);
+  const auto& image = recording_.images[index];
+  if (::write(descriptor_, image.data(), image.size()) != static_cast<ssize_t>(image.size()))
+    throw device_fault(node_, "writing an image", errno);
 }
 
 void LoopbackPlayer::play(const std::stop_token& stop) {
@@ -98,7 +98,7 @@ void LoopbackPlayer::play(const std::stop_token& stop) {
   for (std::size_t index = 1; !stop.stop_requested(); ++index) {
     due += period;
     std::this_thread::sleep_until(due);
-    write(index % recording_.pictures.size());
+    write(index % recording_.images.size());
   }
 }
 

@@ -11,15 +11,15 @@
 
 namespace sheen::capture::test {
 
-/// Pictures as a camera would send them.
+/// Images as a camera would send them.
 struct Recording {
   PixelFormat format = PixelFormat::mjpeg;
-  PictureSize size;
+  ImageSize size;
   double fps = 30;
-  std::vector<std::vector<std::uint8_t>> pictures;  ///< at least one
+  std::vector<std::vector<std::uint8_t>> images;  ///< at least one
 };
 
-/// The sample session's video, its compressed pictures as they lie in the file.
+/// The sample session's video, its compressed images as they lie in the file.
 [[nodiscard]] Recording sample_recording();
 
 /// Plays a recording into the writing end of a v4l2loopback device, over and over at its rate,

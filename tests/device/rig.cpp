@@ -27,7 +27,7 @@ V4l2CameraOptions quick(const std::string& node) {
   V4l2CameraOptions options;
   options.device = node;
   options.mode.format = PixelFormat::yuyv;
-  options.mode.size = PictureSize{640, 480};
+  options.mode.size = ImageSize{640, 480};
   options.lock_automatics = false;
   return options;
 }
@@ -48,21 +48,20 @@ void bind_vivid() {
 }
 
 std::vector<Taken> take(V4l2Camera& camera, std::size_t wanted) {
-  std::vector<Taken> pictures;
-  for (std::size_t wait = 0; wait < wanted + 100 && pictures.size() < wanted; ++wait)
+  std::vector<Taken> images;
+  for (std::size_t wait = 0; wait < wanted + 100 && images.size() < wanted; ++wait)
     if (const auto buffer = camera.next(std::chrono::milliseconds(100)))
-      pictures.push_back({buffer->sequence, buffer->time_s});
-  return pictures;
+      images.push_back({buffer->sequence, buffer->time_s});
+  return images;
 }
 
-void expect_numbered_without_gap(const std::vector<Taken>& pictures) {
-  for (std::size_t n = 1; n < pictures.size(); ++n)
-    EXPECT_EQ(pictures[n].sequence, pictures[n - 1].sequence + 1);
+void expect_numbered_without_gap(const std::vector<Taken>& images) {
+  for (std::size_t n = 1; n < images.size(); ++n)
+    EXPECT_EQ(images[n].sequence, images[n - 1].sequence + 1);
 }
 
-void expect_times_grow(const std::vector<Taken>& pictures) {
-  for (std::size_t n = 1; n < pictures.size(); ++n)
-    EXPECT_GT(pictures[n].time_s, pictures[n - 1].time_s);
+void expect_times_grow(const std::vector<Taken>& images) {
+  for (std::size_t n = 1; n < images.size(); ++n) EXPECT_GT(images[n].time_s, images[n - 1].time_s);
 }
 
 }  // namespace sheen::capture::test

@@ -13,7 +13,7 @@
 namespace sheen::capture::test {
 
 /// The cameras that tests/device/guest_init makes: vivid as a webcam, whose sizes and rates are
-/// lists; vivid as a converter of 1280x720 at 60 pictures a second, which scales; v4l2loopback.
+/// lists; vivid as a converter of 1280x720 at 60 images a second, which scales; v4l2loopback.
 inline constexpr const char* webcam_node = "/dev/video0";
 inline constexpr const char* converter_node = "/dev/video1";
 inline constexpr const char* loopback_node = "/dev/video9";
@@ -41,12 +41,12 @@ struct Taken {
   double time_s = 0;
 };
 
-/// Up to `wanted` pictures, given up after as many waits of .1 s and some more.
+/// Up to `wanted` images, given up after as many waits of .1 s and some more.
 std::vector<Taken> take(V4l2Camera& camera, std::size_t wanted);
 
 /// Every number is one more than the number before.
-void expect_numbered_without_gap(const std::vector<Taken>& pictures);
+void expect_numbered_without_gap(const std::vector<Taken>& images);
 /// Every time is later than the time before.
-void expect_times_grow(const std::vector<Taken>& pictures);
+void expect_times_grow(const std::vector<Taken>& images);
 
 }  // namespace sheen::capture::test

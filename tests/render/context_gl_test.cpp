@@ -152,7 +152,7 @@ TEST_F(GlTest, LinkErrorsNameTheStages) {
   }
 }
 
-TEST_F(GlTest, PicturesTooLargeForTheDriverAreRefused) {
+TEST_F(GlTest, ImagesTooLargeForTheDriverAreRefused) {
   gl::OffscreenTarget target(gl_, true);
   const GLuint usable = target.framebuffer(8, 8);
   EXPECT_THROW(target.framebuffer(1 << 20, 8), core::Error);
@@ -161,7 +161,7 @@ TEST_F(GlTest, PicturesTooLargeForTheDriverAreRefused) {
 }
 
 // A context made and used in another thread, and one that wanders between threads, draw the same
-// picture as one that stays at home.
+// image as one that stays at home.
 TEST(Context, WorksInOtherThreads) {
   const core::Mesh mesh = testing::sphere(0.1f, 8);
   const auto model = testing::random_mean(mesh.positions.size(), 0);

@@ -32,9 +32,9 @@ std::string renderer_name(Context& context) {
 
 class EglContextOn : public ::testing::TestWithParam<EglDevice> {};
 
-// The same renderer on another way to OpenGL: the picture of the reference, but for rounding and
+// The same renderer on another way to OpenGL: the image of the reference, but for rounding and
 // pixels at the silhouette.
-TEST_P(EglContextOn, DrawsThePictureOfTheReference) {
+TEST_P(EglContextOn, DrawsTheImageOfTheReference) {
   std::string why_not;
   const auto context = context_on(GetParam(), why_not);
   if (!context) GTEST_SKIP() << why_not;

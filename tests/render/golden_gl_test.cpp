@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pictures that were looked at once and must stay as they are: tests/render/golden.
+// Images that were looked at once and must stay as they are: tests/render/golden.
 #include "render/surface/surface_renderer.h"
 #include "tests/render/test_scenes.h"
 
@@ -13,34 +13,34 @@
 namespace sheen::render {
 namespace {
 
-/// Compares with golden/NAME.png; differences in steps of 1/255, the mean over the whole picture,
+/// Compares with golden/NAME.png; differences in steps of 1/255, the mean over the whole image,
 /// the largest one pixel inside the silhouette, where no driver may decide otherwise. A failure
 /// leaves NAME_actual.png and NAME_difference.png (amplified) in the working directory.
 void expect_golden(const RenderedView& view, const std::string& name, double mean, int largest) {
-  const cv::Mat& picture = view.image;
+  const cv::Mat& image = view.image;
   const std::filesystem::path folder = SHEEN_SOURCE_DIR "/tests/render/golden";
   const cv::Mat golden = cv::imread((folder / (name + ".png")).string(), cv::IMREAD_COLOR);
-  const bool same_size = golden.size() == picture.size();
-  const cv::Mat everywhere(picture.size(), CV_8UC1, cv::Scalar(255));
+  const bool same_size = golden.size() == image.size();
+  const cv::Mat everywhere(image.size(), CV_8UC1, cv::Scalar(255));
   double found_mean = 0;
   int found_largest = 0;
   if (same_size) {
     const cv::Mat interior = testing::common_interior(view.mask, view.mask, 1);
-    found_mean = testing::difference(picture, golden, everywhere).mean;
-    found_largest = testing::difference(picture, golden, interior).largest;
+    found_mean = testing::difference(image, golden, everywhere).mean;
+    found_largest = testing::difference(image, golden, interior).largest;
     if (found_mean <= mean && found_largest <= largest) return;
   }
 
   // Leave what is needed to judge.
-  cv::imwrite(name + "_actual.png", picture);
+  cv::imwrite(name + "_actual.png", image);
   if (same_size) {
     cv::Mat amplified;
-    cv::absdiff(picture, golden, amplified);
+    cv::absdiff(image, golden, amplified);
     cv::imwrite(name + "_difference.png", amplified * 16);
   }
   ADD_FAILURE() << name << ": mean difference " << found_mean << " (allowed " << mean
                 << "), largest " << found_largest << " (allowed " << largest << "), "
-                << (same_size ? "sizes alike" : "golden picture missing or of another size")
+                << (same_size ? "sizes alike" : "golden image missing or of another size")
                 << "; see " << name << "_actual.png and " << name << "_difference.png in "
                 << std::filesystem::current_path();
 }

@@ -98,7 +98,7 @@ TEST(PatchBuffer, RefusesMoreTexelsThanTheDriverHolds) {
 }
 
 // Uploading what changed equals uploading everything, pixel for pixel; before the upload the
-// picture is the old one.
+// image is the old one.
 TEST(PatchShader, PartialUploadEqualsFullUpload) {
   const core::Mesh mesh = testing::sphere(0.1f, 16);
   auto model = testing::random_iwls(Layout::grid, 16, 3, mesh.positions.size(), 4);

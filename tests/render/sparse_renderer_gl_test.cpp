@@ -71,7 +71,7 @@ TEST(SparsePatchShader, SendsWhatTheLargestPatchNeeds) {
   EXPECT_EQ(shader->upload({}), 0u);
 }
 
-// Growing patch by patch shows the same picture as a renderer made for the final model.
+// Growing patch by patch shows the same image as a renderer made for the final model.
 TEST(SparsePatchShader, GrowingEqualsStartingAfresh) {
   const core::Mesh mesh = testing::sphere(0.1f, 16);
   fitting::sparse::LightFieldModel model(mesh.positions.size());

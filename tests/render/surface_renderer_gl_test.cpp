@@ -97,7 +97,7 @@ TEST_P(MeanAgreement, GpuEqualsReference) {
 
 INSTANTIATE_TEST_SUITE_P(PlainAndBent, MeanAgreement, ::testing::Bool());
 
-// Four triangles that fill the picture: without tessellation the lens would bend their edges by
+// Four triangles that fill the image: without tessellation the lens would bend their edges by
 // several pixels.
 TEST(SurfaceRenderer, CoarsestMeshUnderDistortion) {
   const core::Mesh mesh = testing::tetrahedron(0.2f);
@@ -126,7 +126,7 @@ TEST(SurfaceRenderer, CameraCloseToSurface) {
   expect_equal(render_both(mesh, model, testing::bent_camera(kWidth, kHeight), pose), "close", 2);
 }
 
-// A strong barrel polynomial turns back inside the picture: no ray reaches the corners. Both
+// A strong barrel polynomial turns back inside the image: no ray reaches the corners. Both
 // renderers must leave them black and agree elsewhere.
 TEST(SurfaceRenderer, LensThatFoldsBack) {
   core::CameraModel::Intrinsics in = testing::plain_camera(kWidth, kHeight).intrinsics();
@@ -144,10 +144,10 @@ TEST(SurfaceRenderer, LensThatFoldsBack) {
   expect_equal(views, "folding lens", 2);
 }
 
-// A constant light field is a constant picture: the weights cancel (eq. 7), whatever they are.
+// A constant light field is a constant image: the weights cancel (eq. 7), whatever they are.
 // 0.4 as half is 0.39990, times 255 is 101.97: every pixel 102; likewise 0.8 -> 0.7998 -> 203.94,
 // 0.2 -> 0.19995 -> 50.99.
-TEST(SurfaceRenderer, ConstantLightFieldGivesConstantPicture) {
+TEST(SurfaceRenderer, ConstantLightFieldGivesConstantImage) {
   const core::Mesh mesh = testing::sphere(0.1f, 12);
   auto model = testing::random_iwls(Layout::jittered_disk, 64, 6, mesh.positions.size(), 3);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
@@ -155,13 +155,13 @@ TEST(SurfaceRenderer, ConstantLightFieldGivesConstantPicture) {
   const Pair views = render_both(mesh, model, testing::bent_camera(kWidth, kHeight),
                                  testing::looking_at_origin({1, 1, 1}, 0.36));
   const auto expected = [](const cv::Mat& mask) {
-    cv::Mat picture(mask.size(), CV_8UC3, cv::Scalar(0, 0, 0));
-    picture.setTo(cv::Scalar(51, 204, 102), mask);  // BGR
-    return picture;
+    cv::Mat image(mask.size(), CV_8UC3, cv::Scalar(0, 0, 0));
+    image.setTo(cv::Scalar(51, 204, 102), mask);  // BGR
+    return image;
   };
   EXPECT_GT(cv::countNonZero(views.cpu.mask), 5000);
   EXPECT_EQ(cv::norm(views.cpu.image, expected(views.cpu.mask), cv::NORM_INF), 0);
-  // A rasteriser's attributes carry about 2^-24 of their value at the picture's origin, hundreds of
+  // A rasteriser's attributes carry about 2^-24 of their value at the image's origin, hundreds of
   // pixels of gradient away: near an unseen patch, whose sums are a thousandth of its neighbours',
   // that is 0.2 % of the ratio or half a step.
   EXPECT_LE(cv::norm(views.gpu.image, expected(views.gpu.mask), cv::NORM_INF), 1);

@@ -33,7 +33,7 @@ Eigen::Isometry3d looking_at_origin(const Eigen::Vector3d& from_direction, doubl
 core::CameraModel plain_camera(int width_px, int height_px);
 
 /// Same with barrel distortion, tangential terms and an off-centre principal point: bends the
-/// border by several percent of the picture's width.
+/// border by several percent of the image's width.
 core::CameraModel bent_camera(int width_px, int height_px);
 
 /// Coefficients from a fixed seed: constants in [0.1, 0.9], the others in [-0.3, 0.3]; every
@@ -45,7 +45,7 @@ fitting::mean::MeanLightField random_mean(std::size_t patch_count, int unseen_ev
 /// A smooth glossy look: brightness and hue follow position and direction.
 fitting::iwls::LightFieldModel smooth_iwls(const core::Mesh& mesh, int centers, int terms);
 
-/// How far two pictures are apart where `mask` is set, in steps of 1/255 over all channels.
+/// How far two images are apart where `mask` is set, in steps of 1/255 over all channels.
 struct Difference {
   double mean = 0;
   double quantile_999 = 0;

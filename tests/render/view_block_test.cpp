@@ -16,7 +16,7 @@ TEST(LongestStraightSegment, IsInfiniteWithoutDistortion) {
 }
 
 // One radial coefficient k: the radial map r + k r^3 has second derivative 6 k r, largest where the
-// picture's corner looks. Along x at (R, 0) it is 6 k R; on the grid's rim nothing bends more.
+// image's corner looks. Along x at (R, 0) it is 6 k R; on the grid's rim nothing bends more.
 TEST(LongestStraightSegment, ClosedFormForOneCoefficient) {
   core::CameraModel::Intrinsics in = testing::plain_camera(640, 480).intrinsics();
   in.principal_px = {319.5, 239.5};
@@ -28,7 +28,7 @@ TEST(LongestStraightSegment, ClosedFormForOneCoefficient) {
 }
 
 // What the limit promises: the middle of a segment of that length is seen at most kSagittaLimitPx
-// beside the straight line between its ends, here measured on segments all over the picture.
+// beside the straight line between its ends, here measured on segments all over the image.
 TEST(LongestStraightSegment, KeepsItsPromise) {
   const core::CameraModel camera = testing::bent_camera(640, 480);
   const double s = longest_straight_segment(camera);

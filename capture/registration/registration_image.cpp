@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "capture/registration/registration_picture.h"
+#include "capture/registration/registration_image.h"
 
 #include "capture/registration/contour.h"
 

@@ -8,7 +8,7 @@
 
 namespace sheen::capture {
 
-/// Pictures of some views, cut to the object, with its outline at `before` (orange) and at `after`
+/// Images of some views, cut to the object, with its outline at `before` (orange) and at `after`
 /// (blue): where blue lies on the object's edge, it stands where it was photographed. CV_8UC3.
 /// `labels` has one text per view.
 cv::Mat draw_registration(const core::Mesh& mesh, const core::CameraModel& camera,

@@ -7,7 +7,7 @@
 
 namespace sheen::capture {
 
-/// The picture area with every point that was seen, coloured by its error, and the error as an
+/// The image area with every point that was seen, coloured by its error, and the error as an
 /// arrow made longer by the factor written below; cells without any point are shaded. CV_8UC3.
 cv::Mat draw_coverage(const Calibration& calibration);
 

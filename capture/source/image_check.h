@@ -8,8 +8,8 @@
 namespace sheen::capture {
 
 /// Throws core::Error (bad_input) naming both sizes when `size` is not the camera's.
-void check_picture_size(const std::filesystem::path& subject, const PictureSize& size,
-                        const PictureSize& expected);
+void check_image_size(const std::filesystem::path& subject, const ImageSize& size,
+                      const ImageSize& expected);
 
 /// Throws core::Error (bad_input) for a range that no recording can satisfy: negative, empty, or
 /// starting past the last of `frames` where that number is known.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "capture/calibration/camera_pictures.h"
+#include "capture/calibration/camera_images.h"
 
 #include "capture/source/jpeg_decoder.h"
 #include "capture/source/jpeg_encoder.h"
@@ -16,9 +16,9 @@ constexpr double kSlackS = 0.02;  // a camera's clock trembles
 constexpr std::chrono::milliseconds kPatience{1000};
 constexpr int kMostSilences = 15;
 
-class CameraPictures : public FrameSource {
+class CameraImages : public FrameSource {
  public:
-  CameraPictures(std::unique_ptr<Camera> camera, double seconds)
+  CameraImages(std::unique_ptr<Camera> camera, double seconds)
       : camera_(std::move(camera)), seconds_(seconds) {}
 
   std::optional<Frame> next() override {
@@ -40,14 +40,14 @@ class CameraPictures : public FrameSource {
       return frame;
     }
     throw core::Error(core::Error::Kind::run_failed, camera_->description().device,
-                      "sends no pictures", "check the cable and that nothing else uses it");
+                      "sends no images", "check the cable and that nothing else uses it");
   }
 
   [[nodiscard]] std::optional<int> frame_count() const override { return std::nullopt; }
 
  private:
   bool decode(const CameraBuffer& buffer, cv::Mat& image) {
-    const PictureSize size{buffer.width_px, buffer.height_px};
+    const ImageSize size{buffer.width_px, buffer.height_px};
     if (buffer.format == PixelFormat::mjpeg) return decode_jpeg(buffer.bytes, size, image);
     return decode_jpeg(encoder_.encode(buffer), size, image);
   }
@@ -62,8 +62,8 @@ class CameraPictures : public FrameSource {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> open_camera_pictures(std::unique_ptr<Camera> camera, double seconds) {
-  return std::make_unique<CameraPictures>(std::move(camera), seconds);
+std::unique_ptr<FrameSource> open_camera_images(std::unique_ptr<Camera> camera, double seconds) {
+  return std::make_unique<CameraImages>(std::move(camera), seconds);
 }
 
 }  // namespace sheen::capture

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "capture/source/picture_check.h"
+#include "capture/source/image_check.h"
 
 #include "core/diagnostics/error.h"
 
@@ -8,14 +8,14 @@
 namespace sheen::capture {
 namespace {
 
-std::string text(const PictureSize& size) {
+std::string text(const ImageSize& size) {
   return std::to_string(size.width_px) + "x" + std::to_string(size.height_px);
 }
 
 }  // namespace
 
-void check_picture_size(const std::filesystem::path& subject, const PictureSize& size,
-                        const PictureSize& expected) {
+void check_image_size(const std::filesystem::path& subject, const ImageSize& size,
+                      const ImageSize& expected) {
   if (size == expected) return;
   throw core::bad_input(subject, "is " + text(size) + " but the camera file says " + text(expected),
                         "use the camera file of this recording");

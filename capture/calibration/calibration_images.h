@@ -8,9 +8,9 @@
 
 namespace sheen::capture {
 
-/// Pictures to calibrate from: a video file, a folder of pictures (.jpg, .png, ... in the order of
+/// Images to calibrate from: a video file, a folder of images (.jpg, .png, ... in the order of
 /// their names), or a session folder, whose recording is taken. All must be of one size. Throws
-/// core::Error (bad_input) for a source without pictures.
-std::unique_ptr<FrameSource> open_calibration_pictures(const std::filesystem::path& source);
+/// core::Error (bad_input) for a source without images.
+std::unique_ptr<FrameSource> open_calibration_images(const std::filesystem::path& source);
 
 }  // namespace sheen::capture

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/alignment/gradient_picture.h"
+#include "core/alignment/gradient_image.h"
 
 #include <opencv2/imgproc.hpp>
 
@@ -7,7 +7,7 @@
 
 namespace sheen::core {
 
-void GradientPicture::look_at(const cv::Mat& image, const cv::Rect& region, double smoothing_px) {
+void GradientImage::look_at(const cv::Mat& image, const cv::Rect& region, double smoothing_px) {
   assert(image.type() == CV_8UC3);
   assert(smoothing_px > 0);
   const cv::Rect clipped = region & cv::Rect(0, 0, image.cols, image.rows);
@@ -24,8 +24,8 @@ void GradientPicture::look_at(const cv::Mat& image, const cv::Rect& region, doub
   differentiate();
 }
 
-GradientPicture GradientPicture::smoothed(double smoothing_px) const {
-  GradientPicture result;
+GradientImage GradientImage::smoothed(double smoothing_px) const {
+  GradientImage result;
   result.corner_ = corner_;
   if (packed_.empty()) return result;
   cv::GaussianBlur(values_, result.values_, {}, smoothing_px);
@@ -33,7 +33,7 @@ GradientPicture GradientPicture::smoothed(double smoothing_px) const {
   return result;
 }
 
-std::optional<GradientPicture::Reading> GradientPicture::read(const Eigen::Vector2d& pixel) const {
+std::optional<GradientImage::Reading> GradientImage::read(const Eigen::Vector2d& pixel) const {
   const double x = pixel.x() - corner_.x;
   const double y = pixel.y() - corner_.y;
   if (!(x >= 0 && y >= 0 && x < packed_.cols - 1 && y < packed_.rows - 1)) return std::nullopt;
@@ -49,7 +49,7 @@ std::optional<GradientPicture::Reading> GradientPicture::read(const Eigen::Vecto
                  {static_cast<double>(mixed[1]), static_cast<double>(mixed[2])}};
 }
 
-void GradientPicture::differentiate() {
+void GradientImage::differentiate() {
   cv::Mat planes[3] = {values_, {}, {}};
   cv::Sobel(values_, planes[1], CV_32F, 1, 0, 1, 0.5);  // size 1: central difference
   cv::Sobel(values_, planes[2], CV_32F, 0, 1, 1, 0.5);

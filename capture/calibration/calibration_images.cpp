@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "capture/calibration/calibration_pictures.h"
+#include "capture/calibration/calibration_images.h"
 
-#include "capture/source/picture_check.h"
+#include "capture/source/image_check.h"
 #include "capture/source/video_source.h"
 #include "core/diagnostics/error.h"
 
@@ -20,27 +20,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 6> kPictureEndings{".jpg", ".jpeg", ".png",
-                                                          ".bmp", ".tif",  ".tiff"};
+constexpr std::array<std::string_view, 6> kImageEndings{".jpg", ".jpeg", ".png",
+                                                        ".bmp", ".tif",  ".tiff"};
 constexpr std::array<std::string_view, 3> kRecordings{"frames.avi", "frames.mkv", "frames.mp4"};
 constexpr int kMaxSidePx = 1 << 15;
 
-bool is_picture(const fs::path& path) {
+bool is_image(const fs::path& path) {
   std::string ending = path.extension().string();
   for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return std::find(kPictureEndings.begin(), kPictureEndings.end(), ending) != kPictureEndings.end();
+  return std::find(kImageEndings.begin(), kImageEndings.end(), ending) != kImageEndings.end();
 }
 
-/// Whatever pictures a folder holds, by name; the size of the first binds the others.
-class PictureFolder : public FrameSource {
+/// Whatever images a folder holds, by name; the size of the first binds the others.
+class ImageFolder : public FrameSource {
  public:
-  explicit PictureFolder(const fs::path& folder) {
+  explicit ImageFolder(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder)) {
-      if (entry.is_regular_file() && is_picture(entry.path())) files_.push_back(entry.path());
+      if (entry.is_regular_file() && is_image(entry.path())) files_.push_back(entry.path());
     }
     std::sort(files_.begin(), files_.end());
     if (files_.empty()) {
-      throw core::bad_input(folder, "holds no pictures", "name a folder of .jpg or .png files");
+      throw core::bad_input(folder, "holds no images", "name a folder of .jpg or .png files");
     }
   }
 
@@ -53,11 +53,11 @@ class PictureFolder : public FrameSource {
       frame.image.release();  // more pixels than OpenCV reads
     }
     if (frame.image.empty()) {
-      throw core::bad_input(files_[next_], "cannot be read as a picture", "remove or replace it");
+      throw core::bad_input(files_[next_], "cannot be read as an image", "remove or replace it");
     }
-    const PictureSize size{frame.image.cols, frame.image.rows};
+    const ImageSize size{frame.image.cols, frame.image.rows};
     if (next_ == 0) size_ = size;
-    check_picture_size(files_[next_], size, size_);
+    check_image_size(files_[next_], size, size_);
     frame.index = static_cast<int>(next_++);
     frame.time_s = frame.index;
     return frame;
@@ -70,11 +70,11 @@ class PictureFolder : public FrameSource {
  private:
   std::vector<fs::path> files_;
   std::size_t next_ = 0;
-  PictureSize size_;
+  ImageSize size_;
 };
 
 std::unique_ptr<FrameSource> open_whole_video(const fs::path& path) {
-  PictureSize size;
+  ImageSize size;
   {
     cv::VideoCapture video(path.string(), cv::CAP_FFMPEG);
     size.width_px = static_cast<int>(video.get(cv::CAP_PROP_FRAME_WIDTH));
@@ -82,7 +82,7 @@ std::unique_ptr<FrameSource> open_whole_video(const fs::path& path) {
     if (!video.isOpened() || size.width_px < 1 || size.height_px < 1 ||
         size.width_px > kMaxSidePx || size.height_px > kMaxSidePx) {
       throw core::bad_input(path, "cannot be decoded as a video",
-                            "name a video file or a folder of pictures");
+                            "name a video file or a folder of images");
     }
   }
   return open_video(path, size, {}, std::nullopt);
@@ -90,7 +90,7 @@ std::unique_ptr<FrameSource> open_whole_video(const fs::path& path) {
 
 }  // namespace
 
-std::unique_ptr<FrameSource> open_calibration_pictures(const fs::path& source) {
+std::unique_ptr<FrameSource> open_calibration_images(const fs::path& source) {
   std::error_code no_throw;
   if (fs::is_regular_file(source, no_throw)) return open_whole_video(source);
   if (!fs::is_directory(source, no_throw)) {
@@ -101,10 +101,10 @@ std::unique_ptr<FrameSource> open_calibration_pictures(const fs::path& source) {
       if (fs::is_regular_file(source / name, no_throw)) return open_whole_video(source / name);
     }
     if (fs::is_directory(source / "images", no_throw)) {
-      return std::make_unique<PictureFolder>(source / "images");
+      return std::make_unique<ImageFolder>(source / "images");
     }
   }
-  return std::make_unique<PictureFolder>(source);
+  return std::make_unique<ImageFolder>(source);
 }
 
 }  // namespace sheen::capture

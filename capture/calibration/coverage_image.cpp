@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "capture/calibration/coverage_picture.h"
+#include "capture/calibration/coverage_image.h"
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
@@ -32,11 +32,11 @@ cv::Scalar colour_of(double error_px, double rms_px) {
   return (1 - share) * kSmall + share * kLarge;
 }
 
-void draw_cells(cv::Mat& picture, const cv::Rect& frame, const Calibration& calibration) {
+void draw_cells(cv::Mat& image, const cv::Rect& frame, const Calibration& calibration) {
   cv::Mat counts = cv::Mat::zeros(kCoverageRows, kCoverageColumns, CV_32S);
   const auto& lens = calibration.camera.intrinsics();
   for (const auto& view : calibration.views) {
-    for (const Eigen::Vector2d& p : view.points.in_picture) {
+    for (const Eigen::Vector2d& p : view.points.in_image) {
       const int column = static_cast<int>((p.x() + 0.5) / lens.width_px * kCoverageColumns);
       const int row = static_cast<int>((p.y() + 0.5) / lens.height_px * kCoverageRows);
       if (column < 0 || row < 0 || column >= kCoverageColumns || row >= kCoverageRows) continue;
@@ -50,8 +50,8 @@ void draw_cells(cv::Mat& picture, const cv::Rect& frame, const Calibration& cali
                           cv::Point(frame.x + frame.width * (column + 1) / kCoverageColumns,
                                     frame.y + frame.height * (row + 1) / kCoverageRows));
       const bool is_empty = counts.at<int>(row, column) == 0;
-      cv::rectangle(picture, cell, is_empty ? kEmptyCell : kPaper, cv::FILLED);
-      cv::rectangle(picture, cell, kLine, 1);
+      cv::rectangle(image, cell, is_empty ? kEmptyCell : kPaper, cv::FILLED);
+      cv::rectangle(image, cell, kLine, 1);
     }
   }
 }
@@ -63,14 +63,14 @@ cv::Mat draw_coverage(const Calibration& calibration) {
   const double scale = kWidthPx / lens.width_px;
   const cv::Rect frame(kMarginPx, kMarginPx, static_cast<int>(kWidthPx),
                        static_cast<int>(scale * lens.height_px));
-  cv::Mat picture(frame.height + 2 * kMarginPx + kLegendPx, frame.width + 2 * kMarginPx, CV_8UC3,
-                  kPaper);
-  draw_cells(picture, frame, calibration);
+  cv::Mat image(frame.height + 2 * kMarginPx + kLegendPx, frame.width + 2 * kMarginPx, CV_8UC3,
+                kPaper);
+  draw_cells(image, frame, calibration);
 
   const double factor = kArrowPx / std::max(calibration.rms_px * scale, 1e-9);
   for (const auto& view : calibration.views) {
     for (std::size_t i = 0; i < view.errors_px.size(); ++i) {
-      const Eigen::Vector2d seen = scale * view.points.in_picture[i];
+      const Eigen::Vector2d seen = scale * view.points.in_image[i];
       const Eigen::Vector2d error = (factor * scale) * view.errors_px[i];
       const cv::Point2d from(frame.x + seen.x(), frame.y + seen.y());
       // An outlier's arrow ends after four times the usual length.
@@ -78,20 +78,20 @@ cv::Mat draw_coverage(const Calibration& calibration) {
       const double shown = std::min(length, 4 * kArrowPx) / std::max(length, 1e-9);
       const cv::Point2d to = from + shown * cv::Point2d(error.x(), error.y());
       const cv::Scalar colour = colour_of(view.errors_px[i].norm(), calibration.rms_px);
-      cv::line(picture, subpixel(from), subpixel(to), colour, 1, cv::LINE_AA, 4);
-      cv::circle(picture, subpixel(from), 24, colour, cv::FILLED, cv::LINE_AA, 4);
+      cv::line(image, subpixel(from), subpixel(to), colour, 1, cv::LINE_AA, 4);
+      cv::circle(image, subpixel(from), 24, colour, cv::FILLED, cv::LINE_AA, 4);
     }
   }
   const cv::Point centre(frame.x + cvRound(scale * lens.principal_px.x()),
                          frame.y + cvRound(scale * lens.principal_px.y()));
-  cv::drawMarker(picture, centre, kInk, cv::MARKER_CROSS, 18, 1, cv::LINE_AA);
+  cv::drawMarker(image, centre, kInk, cv::MARKER_CROSS, 18, 1, cv::LINE_AA);
   cv::putText(
-      picture,
-      fmt::format("{} views, {:.2f} px RMS, {:.0f} % of the picture covered; arrows: error "
+      image,
+      fmt::format("{} views, {:.2f} px RMS, {:.0f} % of the image covered; arrows: error "
                   "{:.0f} x; cross: principal point; shaded: no point",
                   calibration.views.size(), calibration.rms_px, 100 * calibration.coverage, factor),
-      {kMarginPx, picture.rows - 16}, cv::FONT_HERSHEY_SIMPLEX, 0.45, kInk, 1, cv::LINE_AA);
-  return picture;
+      {kMarginPx, image.rows - 16}, cv::FONT_HERSHEY_SIMPLEX, 0.45, kInk, 1, cv::LINE_AA);
+  return image;
 }
 
 }  // namespace sheen::capture

@@ -7,15 +7,15 @@
 
 namespace sheen::render {
 
-/// A camera's picture as a texture. The context is current in all calls.
-class PictureTexture {
+/// A camera's image as a texture. The context is current in all calls.
+class ImageTexture {
  public:
-  explicit PictureTexture(const gl::Functions& gl) : gl_(gl) {}
+  explicit ImageTexture(const gl::Functions& gl) : gl_(gl) {}
 
-  /// Sends a picture, CV_8UC3 BGR, not empty; a new size makes a new texture.
-  void upload(const cv::Mat& picture);
+  /// Sends an image, CV_8UC3 BGR, not empty; a new size makes a new texture.
+  void upload(const cv::Mat& image);
 
-  /// 0 before the first picture.
+  /// 0 before the first image.
   [[nodiscard]] GLuint name() const { return texture_.name(); }
 
  private:
