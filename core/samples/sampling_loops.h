@@ -67,9 +67,9 @@ inline void project(const ProjectionSetup& setup, const ProjectionColumns& at, s
     const float y = c.y[i];
     const float z = c.z[i];
     const float depth = R[6] * x + R[7] * y + R[8] * z + s.translation[2];
-    const float nearness = 1.0f / depth;
-    const float ideal_x = (R[0] * x + R[1] * y + R[2] * z + s.translation[0]) * nearness;
-    const float ideal_y = (R[3] * x + R[4] * y + R[5] * z + s.translation[1]) * nearness;
+    const float inverse_depth = 1.0f / depth;
+    const float ideal_x = (R[0] * x + R[1] * y + R[2] * z + s.translation[0]) * inverse_depth;
+    const float ideal_y = (R[3] * x + R[4] * y + R[5] * z + s.translation[1]) * inverse_depth;
     const float r2 = ideal_x * ideal_x + ideal_y * ideal_y;
     float x_px;
     float y_px;

@@ -53,7 +53,7 @@ void DepthRaster::pack(const VertexView& view) {
     for (std::size_t i = begin; i < end; ++i) {
       vertices_[i].x = view.x_px[i] - left_px_;
       vertices_[i].y = view.y_px[i] - top_px_;
-      vertices_[i].nearness = view.depth_m[i] > 0.0f ? 1.0f / view.depth_m[i] : 0.0f;
+      vertices_[i].inverse_depth = view.depth_m[i] > 0.0f ? 1.0f / view.depth_m[i] : 0.0f;
     }
   });
 }
@@ -61,7 +61,7 @@ void DepthRaster::pack(const VertexView& view) {
 void DepthRaster::draw_clusters(std::size_t begin, std::size_t end, const Eigen::Vector3f& eye,
                                 Map& map, LargeTriangles& large) const {
   clear(map);
-  const DepthMap target{map.data()->nearness, width_px_, height_px_, row()};
+  const DepthMap target{map.data()->inverse_depth, width_px_, height_px_, row()};
   for (std::size_t cluster = begin; cluster < end; ++cluster) {
     if (clusters_.faces_away(cluster, eye)) continue;
     kernels_.draw(vertices_.data(),
@@ -78,8 +78,8 @@ void DepthRaster::merge(std::size_t maps) {
     for (std::size_t other = 1; other < maps; ++other) {
       for (std::size_t i = begin; i < end; ++i) {
         for (std::size_t k = 0; k < DepthMap::kGroup; ++k) {
-          float& nearness = merged[i].nearness[k];
-          nearness = std::max(nearness, maps_[other][i].nearness[k]);
+          float& inverse_depth = merged[i].inverse_depth[k];
+          inverse_depth = std::max(inverse_depth, maps_[other][i].inverse_depth[k]);
         }
       }
     }

@@ -18,7 +18,8 @@ struct PixelBox {
   int left = 0, top = 0, right = -1, bottom = -1;
 };
 
-/// Draws the nearness (1 / depth) of a mesh's nearest fronts. Keeps its storage from view to view.
+/// Draws the inverse depth (1 / depth) of a mesh's nearest fronts. Keeps its storage from view to
+/// view.
 class DepthRaster {
  public:
   DepthRaster(const Mesh& mesh, int threads, const RasterKernels& kernels);
@@ -30,14 +31,14 @@ class DepthRaster {
   /// Drawn triangles wider or higher than kLarge_px, and all with a corner that has no pixel.
   [[nodiscard]] const std::vector<LargeTriangle>& large_triangles() const { return large_; }
 
-  /// Least and greatest nearness of the four pixels around a position within the box.
+  /// Least and greatest inverse depth of the four pixels around a position within the box.
   struct Range {
     float least, greatest;
   };
   [[nodiscard]] Range around(float x_px, float y_px) const {
     const float x = x_px - left_px_;
     const float y = y_px - top_px_;
-    const float* upper = maps_.front().data()->nearness + static_cast<std::size_t>(y) * row() +
+    const float* upper = maps_.front().data()->inverse_depth + static_cast<std::size_t>(y) * row() +
                          static_cast<std::size_t>(x);
     const float* lower = upper + row();
     const auto [upper_least, upper_greatest] = std::minmax(upper[0], upper[1]);
@@ -47,7 +48,7 @@ class DepthRaster {
 
  private:
   struct alignas(sizeof(float) * DepthMap::kGroup) PixelGroup {
-    float nearness[DepthMap::kGroup] = {};
+    float inverse_depth[DepthMap::kGroup] = {};
   };
   using Map = std::vector<PixelGroup>;
 

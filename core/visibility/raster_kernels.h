@@ -10,18 +10,18 @@ namespace sheen::core {
 
 /// A vertex as the raster reads it.
 struct alignas(16) RasterVertex {
-  float x, y;      ///< pixel, relative to the first one of the depth map
-  float nearness;  ///< 1 / depth, 1/m; 0 where the vertex has no pixel
+  float x, y;           ///< pixel, relative to the first one of the depth map
+  float inverse_depth;  ///< 1 / depth, 1/m; 0 where the vertex has no pixel
   float unused;
 };
 
-/// Nearness of the nearest front per pixel, 0 where there is none. Whole groups of pixels are
+/// Inverse depth of the nearest front per pixel, 0 where there is none. Whole groups of pixels are
 /// written, and rows past the last one.
 struct DepthMap {
   static constexpr int kGroup = 8;  ///< floats that stand at a multiple of their size in memory
   static constexpr int kExtraRows = 4;
 
-  float* nearness;  ///< aligned like a group
+  float* inverse_depth;  ///< aligned like a group
   std::int32_t width_px, height_px;
   std::size_t row;  ///< floats from row to row, a multiple of kGroup, >= width_px
 };

@@ -56,7 +56,7 @@ SHEEN_INLINE Ints round_down(Floats a) {
 
 /// The same corner of kLanes triangles.
 struct Corner {
-  Floats x, y, nearness;
+  Floats x, y, inverse_depth;
 };
 
 SHEEN_INLINE void transpose(Float4 r0, Float4 r1, Float4 r2, Float4 r3, Float4& x, Float4& y,
@@ -97,7 +97,7 @@ SHEEN_INLINE Corner gather(const RasterVertex* vertices, const std::uint32_t* id
 /// column.
 struct Setup {
   Floats a[3], b[3], c[3];
-  Floats nearness, nearness_dx, nearness_dy, nearest;
+  Floats inverse_depth, inverse_depth_dx, inverse_depth_dy, nearest;
   Ints left, top, right, bottom;
   Ints drawn;  ///< -1 where the triangle is a front and may cover a pixel's centre
   Ints large;  ///< -1 where it has to be looked at again
@@ -130,24 +130,25 @@ SHEEN_INLINE Setup set_up(const Corner& p0, const Corner& p2, const Corner& p1, 
 
   // Refuse backs, lines and what lies between the centres.
   const Floats area = (p1.x - p0.x) * (p2.y - p0.y) - (p2.x - p0.x) * (p1.y - p0.y);
-  const Floats farthest = least(p0.nearness, least(p1.nearness, p2.nearness));
+  const Floats farthest = least(p0.inverse_depth, least(p1.inverse_depth, p2.inverse_depth));
   const Ints projected = farthest > 0.0f;
   s.drawn = projected & (area > kLeastArea_px2) & (s.left <= s.right) & (s.top <= s.bottom);
   s.large = (s.drawn & ((right - left > large_px) | (bottom - top > large_px))) | ~projected;
 
-  // Edges and the plane of the nearness, which is linear on the image.
+  // Edges and the plane of the inverse depth, which is linear on the image.
   const Floats x0 = __builtin_convertvector(s.left & -kGroup, Floats);
   const Floats y0 = __builtin_convertvector(s.top, Floats);
   set_edge(s, 0, p0, p1, x0, y0);
   set_edge(s, 1, p1, p2, x0, y0);
   set_edge(s, 2, p2, p0, x0, y0);
-  const Floats d1 = p1.nearness - p0.nearness;
-  const Floats d2 = p2.nearness - p0.nearness;
+  const Floats d1 = p1.inverse_depth - p0.inverse_depth;
+  const Floats d2 = p2.inverse_depth - p0.inverse_depth;
   const Floats per_area = 1.0f / area;
-  s.nearness_dx = (d1 * (p2.y - p0.y) - d2 * (p1.y - p0.y)) * per_area;
-  s.nearness_dy = (d2 * (p1.x - p0.x) - d1 * (p2.x - p0.x)) * per_area;
-  s.nearness = p0.nearness + (x0 - p0.x) * s.nearness_dx + (y0 - p0.y) * s.nearness_dy;
-  s.nearest = most(p0.nearness, most(p1.nearness, p2.nearness));
+  s.inverse_depth_dx = (d1 * (p2.y - p0.y) - d2 * (p1.y - p0.y)) * per_area;
+  s.inverse_depth_dy = (d2 * (p1.x - p0.x) - d1 * (p2.x - p0.x)) * per_area;
+  s.inverse_depth =
+      p0.inverse_depth + (x0 - p0.x) * s.inverse_depth_dx + (y0 - p0.y) * s.inverse_depth_dy;
+  s.nearest = most(p0.inverse_depth, most(p1.inverse_depth, p2.inverse_depth));
   return s;
 }
 
@@ -168,23 +169,23 @@ SHEEN_INLINE void draw_lane(const Setup& s, int lane, const DepthMap& map) {
   const std::int32_t top = s.top[lane];
   const std::int32_t height = s.bottom[lane] - top;
   const Floats b0 = splat(s.b[0][lane]), b1 = splat(s.b[1][lane]), b2 = splat(s.b[2][lane]);
-  const Floats down = splat(s.nearness_dy[lane]);
+  const Floats down = splat(s.inverse_depth_dy[lane]);
   const Floats nearest = splat(s.nearest[lane]);
-  float* row = map.nearness + static_cast<std::size_t>(top) * map.row + origin;
+  float* row = map.inverse_depth + static_cast<std::size_t>(top) * map.row + origin;
   for (std::int32_t first = begin; first <= end; first += kLanes) {
     const Floats dx = counting() + static_cast<float>(first);
     Floats edge0 = s.c[0][lane] + s.a[0][lane] * dx;
     Floats edge1 = s.c[1][lane] + s.a[1][lane] * dx;
     Floats edge2 = s.c[2][lane] + s.a[2][lane] * dx;
-    Floats plane = s.nearness[lane] + s.nearness_dx[lane] * dx;
+    Floats plane = s.inverse_depth[lane] + s.inverse_depth_dx[lane] * dx;
     float* pixels = row + first;
     for (std::int32_t y = 0; y <= height; y += kRows) {
       for (int r = 0; r < kRows; ++r, pixels += map.row) {
-        const Floats nearness = least(plane, nearest);
+        const Floats inverse_depth = least(plane, nearest);
         auto* place = reinterpret_cast<PixelFloats*>(pixels);
         const Floats before = *place;
         const Ints covered = least(edge0, least(edge1, edge2)) >= 0.0f;
-        *place = (covered & (nearness > before)) ? nearness : before;
+        *place = (covered & (inverse_depth > before)) ? inverse_depth : before;
         edge0 += b0;
         edge1 += b1;
         edge2 += b2;

@@ -82,14 +82,15 @@ class RasterVisibility final : public Visibility {
                         });
   }
 
-  /// A pixel hides where depth * nearness > 1 + bias, with a bias of kBiasSteps pixels times the
-  /// change of depth per step across the view, relative to depth: the tangent of the angle between
-  /// normal and view, whose sine is the radius on the disc of directions. Compared by squares.
+  /// A pixel hides where depth * inverse_depth > 1 + bias, with a bias of kBiasSteps pixels times
+  /// the change of depth per step across the view, relative to depth: the tangent of the angle
+  /// between normal and view, whose sine is the radius on the disc of directions. Compared by
+  /// squares.
   [[nodiscard]] Answer ask_map(const VertexView& view, std::uint32_t i, float pixel_angle) const {
     const float sine2 = view.u[i] * view.u[i] + view.v[i] * view.v[i];
     const float bias_px = kBiasSteps * pixel_angle;
-    const auto in_front = [&, depth_m = view.depth_m[i]](float nearness) {
-      const float excess = depth_m * nearness - (1.0f + kRelativeBias);
+    const auto in_front = [&, depth_m = view.depth_m[i]](float inverse_depth) {
+      const float excess = depth_m * inverse_depth - (1.0f + kRelativeBias);
       return excess > 0.0f && excess * excess * (1.0f - sine2) > bias_px * bias_px * sine2;
     };
     const DepthRaster::Range found = raster_.around(view.x_px[i], view.y_px[i]);
