@@ -3,8 +3,8 @@
 
 #include "core/concurrency/parallel_for.h"
 #include "core/visibility/bent_triangles.h"
-#include "core/visibility/depth_raster.h"
 #include "core/visibility/ray_caster.h"
+#include "core/visibility/z_buffer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -93,13 +93,13 @@ class RasterVisibility final : public Visibility {
       const float excess = depth_m * inverse_depth - (1.0f + kRelativeBias);
       return excess > 0.0f && excess * excess * (1.0f - sine2) > bias_px * bias_px * sine2;
     };
-    const DepthRaster::Range found = raster_.around(view.x_px[i], view.y_px[i]);
+    const ZBuffer::Range found = raster_.around(view.x_px[i], view.y_px[i]);
     if (!in_front(found.greatest)) return Answer::seen;
     return in_front(found.least) ? Answer::hidden : Answer::doubt;
   }
 
   RayCaster caster_;
-  DepthRaster raster_;
+  ZBuffer raster_;
   std::vector<Eigen::Vector3f> positions_;
   int threads_;
   std::vector<std::uint32_t> candidates_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/visibility/depth_raster.h"
+#include "core/visibility/z_buffer.h"
 
 #include "core/concurrency/parallel_for.h"
 
@@ -8,14 +8,14 @@
 
 namespace sheen::core {
 
-DepthRaster::DepthRaster(const Mesh& mesh, int threads, const RasterKernels& kernels)
+ZBuffer::ZBuffer(const Mesh& mesh, int threads, const RasterKernels& kernels)
     : clusters_(mesh),
       threads_(std::max(1, threads)),
       kernels_(kernels),
       vertices_(mesh.positions.size()),
       maps_(static_cast<std::size_t>(threads_)) {}
 
-bool DepthRaster::draw(const VertexView& view, const Eigen::Vector3f& eye, const PixelBox& box) {
+bool ZBuffer::draw(const VertexView& view, const Eigen::Vector3f& eye, const PixelBox& box) {
   left_px_ = static_cast<float>(box.left);
   top_px_ = static_cast<float>(box.top);
   width_px_ = box.right - box.left + 1;
@@ -48,7 +48,7 @@ bool DepthRaster::draw(const VertexView& view, const Eigen::Vector3f& eye, const
   return true;
 }
 
-void DepthRaster::pack(const VertexView& view) {
+void ZBuffer::pack(const VertexView& view) {
   parallel_for(vertices_.size(), threads_, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       vertices_[i].x = view.x_px[i] - left_px_;
@@ -58,8 +58,8 @@ void DepthRaster::pack(const VertexView& view) {
   });
 }
 
-void DepthRaster::draw_clusters(std::size_t begin, std::size_t end, const Eigen::Vector3f& eye,
-                                Map& map, LargeTriangles& large) const {
+void ZBuffer::draw_clusters(std::size_t begin, std::size_t end, const Eigen::Vector3f& eye,
+                            Map& map, LargeTriangles& large) const {
   clear(map);
   const DepthMap target{map.data()->inverse_depth, width_px_, height_px_, row()};
   for (std::size_t cluster = begin; cluster < end; ++cluster) {
@@ -71,7 +71,7 @@ void DepthRaster::draw_clusters(std::size_t begin, std::size_t end, const Eigen:
   }
 }
 
-void DepthRaster::merge(std::size_t maps) {
+void ZBuffer::merge(std::size_t maps) {
   if (maps == 0) clear(maps_.front());
   Map& merged = maps_.front();
   parallel_for(merged.size(), threads_, [&](std::size_t begin, std::size_t end) {
@@ -86,7 +86,7 @@ void DepthRaster::merge(std::size_t maps) {
   });
 }
 
-void DepthRaster::clear(Map& map) const {
+void ZBuffer::clear(Map& map) const {
   map.assign(groups_ * static_cast<std::size_t>(height_px_ + DepthMap::kExtraRows), {});
 }
 

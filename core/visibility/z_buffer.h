@@ -20,9 +20,9 @@ struct PixelBox {
 
 /// Draws the inverse depth (1 / depth) of a mesh's nearest fronts. Keeps its storage from view to
 /// view.
-class DepthRaster {
+class ZBuffer {
  public:
-  DepthRaster(const Mesh& mesh, int threads, const RasterKernels& kernels);
+  ZBuffer(const Mesh& mesh, int threads, const RasterKernels& kernels);
 
   /// Draws the part of the image that `box` holds, of a view from `eye` (object frame, metres).
   /// False where too many triangles are large: then nothing is promised.
