@@ -94,7 +94,7 @@ Vector3f busy_wall(const Vector3f& direction) {
     frequency *= 2.0f;
     strength *= 0.67f;
   }
-  // Window: bright stripes of 12 degrees, half of it blinds.
+  // Window: bright stripes of 12 degrees, half of it invalid.
   const float azimuth = std::atan2(direction.y(), direction.x()) / kDegree;
   const float elevation = std::asin(direction.z()) / kDegree;
   const bool in_window = std::abs(azimuth) < 50.0f && elevation > 5.0f && elevation < 65.0f;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/samples/vertex_view.h"
 #include "render/gl/offscreen_target.h"
-#include "render/surface/blind_pixels.h"
+#include "render/surface/invalid_ray_mask.h"
 #include "render/surface/patch_shader.h"
 #include "render/surface/surface_pass.h"
 #include "render/surface/surface_renderer.h"
@@ -52,7 +52,8 @@ class GlSurfaceRenderer final : public SurfaceRenderer {
     // Read back; four bytes per pixel, so rows need no padding.
     pixels_.create(camera.height_px(), camera.width_px(), CV_8UC4);
     gl_.ReadPixels(0, 0, pixels_.cols, pixels_.rows, GL_BGRA, GL_UNSIGNED_BYTE, pixels_.data);
-    if (const cv::Mat& blind = blind_.of(camera); !blind.empty()) pixels_.setTo(0, blind);
+    if (const cv::Mat& invalid = invalid_rays_.of(camera); !invalid.empty())
+      pixels_.setTo(0, invalid);
     return split();
   }
 
@@ -74,7 +75,7 @@ class GlSurfaceRenderer final : public SurfaceRenderer {
   std::unique_ptr<PatchShader> patches_;
   SurfacePass pass_;
   gl::OffscreenTarget target_;
-  BlindPixels blind_;
+  InvalidRayMask invalid_rays_;
   cv::Mat pixels_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "render/surface/view_block.h"
 
-#include "render/surface/blind_pixels.h"
+#include "render/surface/invalid_ray_mask.h"
 #include "tests/render/test_scenes.h"
 
 #include <gtest/gtest.h>
@@ -49,19 +49,19 @@ TEST(LongestStraightSegment, KeepsItsPromise) {
   EXPECT_GE(worst, 0.25 * kSagittaLimitPx);
 }
 
-TEST(BlindPixels, EmptyForCamerasWhoseCornersSee) {
-  BlindPixels blind;
-  EXPECT_TRUE(blind.of(testing::bent_camera(64, 48)).empty());
+TEST(InvalidRayMask, EmptyForCamerasWhoseCornersSee) {
+  InvalidRayMask invalid;
+  EXPECT_TRUE(invalid.of(testing::bent_camera(64, 48)).empty());
 }
 
 // r (1 - 0.4 r^2) grows up to r = 1 / sqrt(1.2), where it is 0.6086: with a focal length of 40
-// pixels everything beyond 24.3 pixels from the centre is blind.
-TEST(BlindPixels, ClosedFormForABarrelThatFoldsBack) {
+// pixels everything beyond 24.3 pixels from the centre is invalid.
+TEST(InvalidRayMask, ClosedFormForABarrelThatFoldsBack) {
   core::CameraModel::Intrinsics in = testing::plain_camera(65, 65).intrinsics();
   in.focal_px = {40, 40};
   in.distortion[0] = -0.4;
-  BlindPixels blind;
-  const cv::Mat mask = blind.of(core::CameraModel(in));
+  InvalidRayMask invalid;
+  const cv::Mat mask = invalid.of(core::CameraModel(in));
   ASSERT_FALSE(mask.empty());
   for (int y = 0; y < 65; ++y) {
     for (int x = 0; x < 65; ++x) {
@@ -70,7 +70,7 @@ TEST(BlindPixels, ClosedFormForABarrelThatFoldsBack) {
       EXPECT_EQ(mask.at<std::uint8_t>(y, x) != 0, radius > 24.34) << x << " " << y;
     }
   }
-  EXPECT_TRUE(blind.of(testing::plain_camera(65, 65)).empty());
+  EXPECT_TRUE(invalid.of(testing::plain_camera(65, 65)).empty());
 }
 
 }  // namespace

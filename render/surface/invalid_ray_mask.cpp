@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "render/surface/blind_pixels.h"
+#include "render/surface/invalid_ray_mask.h"
 
 #include <array>
 
@@ -24,7 +24,7 @@ bool corners_see(const core::CameraModel& camera) {
 
 }  // namespace
 
-const cv::Mat& BlindPixels::of(const core::CameraModel& camera) {
+const cv::Mat& InvalidRayMask::of(const core::CameraModel& camera) {
   if (same(camera, camera_)) return mask_;
   camera_ = camera;
   mask_.release();

@@ -8,9 +8,9 @@
 namespace sheen::render {
 
 /// Pixels that no ray of the lens model reaches (CameraModel::unproject has no answer), which a
-/// rasteriser must leave black: CV_8UC1, 255 where blind; empty when there are none, as for any
+/// rasteriser must leave black: CV_8UC1, 255 where invalid; empty when there are none, as for any
 /// camera whose corners see something. Remembers the last camera.
-class BlindPixels {
+class InvalidRayMask {
  public:
   const cv::Mat& of(const core::CameraModel& camera);
 
