@@ -2,7 +2,7 @@
 #include "core/visibility/raster_visibility.h"
 
 #include "core/concurrency/parallel_for.h"
-#include "core/visibility/bent_triangles.h"
+#include "core/visibility/distorted_edges.h"
 #include "core/visibility/ray_caster.h"
 #include "core/visibility/z_buffer.h"
 
@@ -75,7 +75,7 @@ class RasterVisibility final : public Visibility {
                                   const Eigen::Isometry3d& camera_from_object) const {
     return std::none_of(raster_.large_triangles().begin(), raster_.large_triangles().end(),
                         [&](const LargeTriangle& triangle) {
-                          return is_bent(
+                          return has_distorted_edge(
                               camera, camera_from_object,
                               {positions_[triangle.corners[0]], positions_[triangle.corners[1]],
                                positions_[triangle.corners[2]]});

@@ -21,7 +21,7 @@ using testing::together;
 
 const CameraModel kPlain({1280, 720, {1100, 1100}, {640, 360}, {}});
 /// Bends a line across the image by several per cent of its width.
-const CameraModel kBent({1280, 720, {1100, 1090}, {655, 340}, {-0.3, 0.1, 2e-3, -1e-3, 0}});
+const CameraModel kDistorted({1280, 720, {1100, 1090}, {655, 340}, {-0.3, 0.1, 2e-3, -1e-3, 0}});
 
 /// Looks at the origin from a direction; the image's y axis points away from `up`.
 Eigen::Isometry3d looking_from(const Eigen::Vector3d& side, double distance_m) {
@@ -96,7 +96,7 @@ Mesh row_of_spheres(int rings, float spacing_m) {
 }
 
 TEST(RasterVisibility, ConvexSurfaceHidesNothingOfItself) {
-  for (const CameraModel& camera : {kPlain, kBent}) {
+  for (const CameraModel& camera : {kPlain, kDistorted}) {
     for (const int rings : {8, 40, 125}) {
       const Agreement found = compare(sphere(rings, 2 * rings), camera, 4.5);
       EXPECT_EQ(found.hidden, 0u);
@@ -106,7 +106,7 @@ TEST(RasterVisibility, ConvexSurfaceHidesNothingOfItself) {
 }
 
 TEST(RasterVisibility, AgreesWithRaysFromCoarseToFine) {
-  for (const CameraModel& camera : {kPlain, kBent}) {
+  for (const CameraModel& camera : {kPlain, kDistorted}) {
     for (const int rings : {6, 20, 60, 110}) {
       const Agreement found = compare(row_of_spheres(rings, 0.09f), camera, 0.4);
       EXPECT_GT(found.share(found.hidden), 0.05) << "nothing to find out";
@@ -117,7 +117,7 @@ TEST(RasterVisibility, AgreesWithRaysFromCoarseToFine) {
 
 // Where surfaces cross, a vertex less than two pixels' slope below the other counts as seen.
 TEST(RasterVisibility, AgreesWithRaysWhereSurfacesCross) {
-  for (const CameraModel& camera : {kPlain, kBent}) {
+  for (const CameraModel& camera : {kPlain, kDistorted}) {
     const Agreement found = compare(row_of_spheres(20, 0.07f), camera, 0.4);
     EXPECT_GE(found.share(found.alike), 0.995);
   }
@@ -133,7 +133,7 @@ TEST(RasterVisibility, AgreesWithRaysOnScannedMeshes) {
     for (Eigen::Vector3f& position : mesh.positions) {
       position = 0.2f / box.diagonal().norm() * (position - box.center());
     }
-    for (const CameraModel& camera : {kPlain, kBent}) {
+    for (const CameraModel& camera : {kPlain, kDistorted}) {
       const Agreement found = compare(mesh, camera, 0.45);
       RecordProperty(std::string(name), std::to_string(found.share(found.alike)));
       EXPECT_GE(found.share(found.alike), 0.995) << name;
@@ -184,7 +184,7 @@ TEST(RasterVisibility, TrianglesAroundTheWholeImageHide) {
   const Mesh mesh = together(square_grid(150, 0.5f, 0.0f), lid);
   Eigen::Isometry3d pose = camera_above(2);
   pose.linear() = Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX()) * pose.linear();
-  for (const CameraModel& camera : {kPlain, kBent}) {
+  for (const CameraModel& camera : {kPlain, kDistorted}) {
     VertexView view = projected(mesh, camera, pose);
     ASSERT_GT(count_of(view, VertexRejection::none), 1000u);
     make_raster_visibility(mesh, 1)->reject_occluded(camera, pose, view);
@@ -195,14 +195,14 @@ TEST(RasterVisibility, TrianglesAroundTheWholeImageHide) {
 TEST(RasterVisibility, NeitherThreadsNorInstructionSetsMatter) {
   const Mesh mesh = row_of_spheres(60, 0.09f);
   const Eigen::Isometry3d pose = looking_from(kSides[0], 0.4);
-  const VertexView before = projected(mesh, kBent, pose);
+  const VertexView before = projected(mesh, kDistorted, pose);
   VertexView expected = before;
-  make_raster_visibility(mesh, 1)->reject_occluded(kBent, pose, expected);
+  make_raster_visibility(mesh, 1)->reject_occluded(kDistorted, pose, expected);
   EXPECT_GT(count_of(expected, VertexRejection::occluded), 100u);
   for (const RasterKernels& kernels : raster_kernel_sets()) {
     for (const int threads : {1, 2, 3, 8}) {
       VertexView view = before;
-      make_raster_visibility(mesh, threads, kernels)->reject_occluded(kBent, pose, view);
+      make_raster_visibility(mesh, threads, kernels)->reject_occluded(kDistorted, pose, view);
       EXPECT_EQ(view.rejection, expected.rejection) << kernels.instruction_set << threads;
     }
   }
@@ -230,11 +230,11 @@ TEST(SamplingKernels, ProjectAsTheCameraModelDoes) {
   const Mesh mesh = row_of_spheres(40, 0.09f);
   for (const Eigen::Vector3d& side : kSides) {
     const Eigen::Isometry3d pose = looking_from(side, 0.4);
-    const VertexView view = projected(mesh, kBent, pose);
+    const VertexView view = projected(mesh, kDistorted, pose);
     const Eigen::Vector3f eye = eye_in_object(pose);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
       const Eigen::Vector3d in_camera = pose * mesh.positions[i].cast<double>();
-      const auto pixel = kBent.project(in_camera);
+      const auto pixel = kDistorted.project(in_camera);
       ASSERT_TRUE(pixel);
       // Coordinates of 0.5 m at half an ulp (3e-8), three sums each, at f / z = 1100 / 0.25 pixels
       // per metre: 4e-4 px; the same again from the lens.

@@ -117,7 +117,7 @@ TEST_F(GlTest, RendererLeavesNothingBehind) {
   {
     const auto renderer = make_gl_surface_renderer(*context_, mesh, model);
     const auto pose = testing::looking_at_origin({1, 0, 0}, 0.5);
-    renderer->render(testing::bent_camera(64, 48), pose);
+    renderer->render(testing::distorted_camera(64, 48), pose);
     renderer->render(testing::plain_camera(32, 24), pose);
     // Vertices, indices, view block, coefficients; their texture, colour and depth.
     EXPECT_EQ(alive(), 7);
@@ -165,7 +165,7 @@ TEST_F(GlTest, ImagesTooLargeForTheDriverAreRefused) {
 TEST(Context, WorksInOtherThreads) {
   const core::Mesh mesh = testing::sphere(0.1f, 8);
   const auto model = testing::random_mean(mesh.positions.size(), 0);
-  const auto camera = testing::bent_camera(64, 48);
+  const auto camera = testing::distorted_camera(64, 48);
   const auto pose = testing::looking_at_origin({1, 0, 0}, 0.36);
   const auto context = make_osmesa_context();
   const auto renderer = make_gl_surface_renderer(*context, mesh, model);

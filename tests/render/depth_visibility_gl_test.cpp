@@ -87,7 +87,7 @@ TEST(DepthVisibility, SphereHidesNothing) {
 TEST(DepthVisibility, SphereUnderDistortionHidesNothing) {
   for (const int rings : {8, 40, 125}) {
     const Agreement found =
-        compare(testing::sphere(0.1f, rings), testing::bent_camera(1280, 720), 0.45);
+        compare(testing::sphere(0.1f, rings), testing::distorted_camera(1280, 720), 0.45);
     EXPECT_EQ(found.visible, found.candidates);
     EXPECT_EQ(found.false_hidden, 0u) << rings << " rings";
   }
@@ -98,14 +98,15 @@ TEST(DepthVisibility, TorusKnotAgreesWithRays) {
   const Agreement plain = compare(mesh, testing::plain_camera(1280, 720), 0.45);
   expect_agreement(plain, "torus knot", 0.01);
   EXPECT_GT(plain.share(plain.candidates - plain.visible), 0.05) << "nothing to find out";
-  expect_agreement(compare(mesh, testing::bent_camera(1280, 720), 0.45), "torus knot, bent", 0.01);
+  expect_agreement(compare(mesh, testing::distorted_camera(1280, 720), 0.45),
+                   "torus knot, distorted", 0.01);
 }
 
 // Triangles of many pixels, some of them large enough for tessellation.
 TEST(DepthVisibility, CoarseTorusKnotUnderDistortion) {
   expect_agreement(
-      compare(testing::torus_knot(0.2f, 120, 12), testing::bent_camera(1280, 720), 0.45),
-      "coarse torus knot, bent", 0.01);
+      compare(testing::torus_knot(0.2f, 120, 12), testing::distorted_camera(1280, 720), 0.45),
+      "coarse torus knot, distorted", 0.01);
 }
 
 TEST(DepthVisibility, BunnyAgreesWithRays) {
@@ -118,7 +119,8 @@ TEST(DepthVisibility, BunnyAgreesWithRays) {
     position = 0.2f / box.diagonal().norm() * (position - box.center());
   }
   expect_agreement(compare(mesh, testing::plain_camera(1280, 720), 0.45), "bunny", 0.01);
-  expect_agreement(compare(mesh, testing::bent_camera(1280, 720), 0.45), "bunny, bent", 0.01);
+  expect_agreement(compare(mesh, testing::distorted_camera(1280, 720), 0.45), "bunny, distorted",
+                   0.01);
 }
 
 }  // namespace

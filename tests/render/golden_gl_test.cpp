@@ -61,10 +61,10 @@ TEST(Golden, GlossyTorusKnot) {
                 "torus_knot", 0.05, 2);
 }
 
-TEST(Golden, TetrahedronThroughABentLens) {
+TEST(Golden, TetrahedronThroughADistortingLens) {
   const core::Mesh mesh = testing::tetrahedron(0.2f);
   const auto model = testing::random_iwls(fitting::iwls::Layout::grid, 16, 3, 4, 0);
-  expect_golden(draw(mesh, model, testing::bent_camera(160, 120),
+  expect_golden(draw(mesh, model, testing::distorted_camera(160, 120),
                      testing::looking_at_origin({1, 0.2, 0.3}, 0.45)),
                 "tetrahedron_bent", 0.05, 2);
 }

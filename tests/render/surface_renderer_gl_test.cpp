@@ -34,8 +34,8 @@ Pair render_both(const core::Mesh& mesh, const fitting::LightField& light_field,
 
 /// GPU and CPU within one step in the mean and for 99.9 % of the values on interior pixels; masks
 /// alike up to the pixels whose centres an edge passes within rounding. `largest` is allowed at
-/// single pixels: a bent edge may be 0.05 px off, and random colours change by up to 80 steps per
-/// pixel where triangles are seen from the side.
+/// single pixels: a distorted edge may be 0.05 px off, and random colours change by up to 80 steps
+/// per pixel where triangles are seen from the side.
 void expect_equal(const Pair& views, const std::string& what, int largest) {
   const cv::Mat interior = testing::common_interior(views.gpu.mask, views.cpu.mask, 1);
   const Difference found = testing::difference(views.gpu.image, views.cpu.image, interior);
@@ -55,18 +55,19 @@ void expect_equal(const Pair& views, const std::string& what, int largest) {
 class IwlsAgreement : public ::testing::TestWithParam<std::tuple<Layout, int, int, bool>> {};
 
 TEST_P(IwlsAgreement, GpuEqualsReference) {
-  const auto [layout, centers, terms, bent] = GetParam();
+  const auto [layout, centers, terms, distorted] = GetParam();
   const core::Mesh mesh = testing::sphere(0.1f, 20);
   // Between two unseen corners the colour jumps within a thousandth of a triangle, so that the
-  // hundredths of a pixel by which a bent edge is off show: unseen patches only without a lens.
-  const int unseen_every = bent ? 0 : 5;
+  // hundredths of a pixel by which a distorted edge is off show: unseen patches only without a
+  // lens.
+  const int unseen_every = distorted ? 0 : 5;
   const auto model =
       testing::random_iwls(layout, centers, terms, mesh.positions.size(), unseen_every);
-  const core::CameraModel camera =
-      bent ? testing::bent_camera(kWidth, kHeight) : testing::plain_camera(kWidth, kHeight);
+  const core::CameraModel camera = distorted ? testing::distorted_camera(kWidth, kHeight)
+                                             : testing::plain_camera(kWidth, kHeight);
   const Pair views =
       render_both(mesh, model, camera, testing::looking_at_origin({1, 0.4, 0.5}, 0.36));
-  expect_equal(views, "iwls", bent ? 4 : 1);
+  expect_equal(views, "iwls", distorted ? 4 : 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(AllShapes, IwlsAgreement,
@@ -79,9 +80,9 @@ INSTANTIATE_TEST_SUITE_P(AllShapes, IwlsAgreement,
 TEST(SurfaceRenderer, UnseenPatchesUnderDistortion) {
   const core::Mesh mesh = testing::sphere(0.1f, 20);
   const auto model = testing::random_iwls(Layout::grid, 16, 3, mesh.positions.size(), 5);
-  expect_equal(render_both(mesh, model, testing::bent_camera(kWidth, kHeight),
+  expect_equal(render_both(mesh, model, testing::distorted_camera(kWidth, kHeight),
                            testing::looking_at_origin({1, 0.4, 0.5}, 0.36)),
-               "unseen, bent", 100);
+               "unseen, distorted", 100);
 }
 
 class MeanAgreement : public ::testing::TestWithParam<bool> {};
@@ -89,20 +90,20 @@ class MeanAgreement : public ::testing::TestWithParam<bool> {};
 TEST_P(MeanAgreement, GpuEqualsReference) {
   const core::Mesh mesh = testing::sphere(0.1f, 20);
   const auto model = testing::random_mean(mesh.positions.size(), GetParam() ? 0 : 5);
-  const core::CameraModel camera =
-      GetParam() ? testing::bent_camera(kWidth, kHeight) : testing::plain_camera(kWidth, kHeight);
+  const core::CameraModel camera = GetParam() ? testing::distorted_camera(kWidth, kHeight)
+                                              : testing::plain_camera(kWidth, kHeight);
   expect_equal(render_both(mesh, model, camera, testing::looking_at_origin({-0.3, 1, 0.2}, 0.36)),
                "mean", 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(PlainAndBent, MeanAgreement, ::testing::Bool());
+INSTANTIATE_TEST_SUITE_P(PlainAndDistorted, MeanAgreement, ::testing::Bool());
 
 // Four triangles that fill the image: without tessellation the lens would bend their edges by
 // several pixels.
 TEST(SurfaceRenderer, CoarsestMeshUnderDistortion) {
   const core::Mesh mesh = testing::tetrahedron(0.2f);
   const auto model = testing::random_iwls(Layout::grid, 16, 3, mesh.positions.size(), 0);
-  expect_equal(render_both(mesh, model, testing::bent_camera(640, 480),
+  expect_equal(render_both(mesh, model, testing::distorted_camera(640, 480),
                            testing::looking_at_origin({1, 0.2, 0.3}, 0.45)),
                "tetrahedron", 2);
 }
@@ -111,7 +112,7 @@ TEST(SurfaceRenderer, FineMesh) {
   const core::Mesh mesh = testing::sphere(0.1f, 123);
   ASSERT_GT(mesh.positions.size(), 30000u);
   const auto model = testing::smooth_iwls(mesh, 16, 3);
-  expect_equal(render_both(mesh, model, testing::bent_camera(640, 480),
+  expect_equal(render_both(mesh, model, testing::distorted_camera(640, 480),
                            testing::looking_at_origin({1, 0.2, 0.3}, 0.36)),
                "30k", 2);
 }
@@ -123,7 +124,8 @@ TEST(SurfaceRenderer, CameraCloseToSurface) {
   Eigen::Isometry3d pose = testing::looking_at_origin({1, 0.2, 0.3}, 0.13);
   pose.prerotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d::UnitY()));
   pose.pretranslate(Eigen::Vector3d(0.02, 0.01, 0));
-  expect_equal(render_both(mesh, model, testing::bent_camera(kWidth, kHeight), pose), "close", 2);
+  expect_equal(render_both(mesh, model, testing::distorted_camera(kWidth, kHeight), pose), "close",
+               2);
 }
 
 // A strong barrel polynomial turns back inside the image: no ray reaches the corners. Both
@@ -152,7 +154,7 @@ TEST(SurfaceRenderer, ConstantLightFieldGivesConstantImage) {
   auto model = testing::random_iwls(Layout::jittered_disk, 64, 6, mesh.positions.size(), 3);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
     model.store_constant(i, {0.4f, 0.8f, 0.2f});
-  const Pair views = render_both(mesh, model, testing::bent_camera(kWidth, kHeight),
+  const Pair views = render_both(mesh, model, testing::distorted_camera(kWidth, kHeight),
                                  testing::looking_at_origin({1, 1, 1}, 0.36));
   const auto expected = [](const cv::Mat& mask) {
     cv::Mat image(mask.size(), CV_8UC3, cv::Scalar(0, 0, 0));
@@ -216,7 +218,7 @@ TEST(SurfaceRenderer, BackFacesAreNotDrawn) {
 TEST(SurfaceRenderer, ReferenceDoesNotDependOnThreads) {
   const core::Mesh mesh = testing::sphere(0.1f, 20);
   const auto model = testing::random_iwls(Layout::disk, 16, 3, mesh.positions.size(), 4);
-  const auto camera = testing::bent_camera(kWidth, kHeight);
+  const auto camera = testing::distorted_camera(kWidth, kHeight);
   const auto pose = testing::looking_at_origin({1, 0.4, 0.5}, 0.36);
   const RenderedView one = make_reference_surface_renderer(mesh, model, 1)->render(camera, pose);
   const RenderedView three = make_reference_surface_renderer(mesh, model, 3)->render(camera, pose);

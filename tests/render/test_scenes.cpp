@@ -140,7 +140,7 @@ core::CameraModel plain_camera(int width_px, int height_px) {
   return core::CameraModel(intrinsics(width_px, height_px));
 }
 
-core::CameraModel bent_camera(int width_px, int height_px) {
+core::CameraModel distorted_camera(int width_px, int height_px) {
   core::CameraModel::Intrinsics in = intrinsics(width_px, height_px);
   in.principal_px += Eigen::Vector2d(0.02 * width_px, -0.03 * height_px);
   in.distortion = {-0.30, 0.12, 0.002, -0.0015, 0.01, 0.02, -0.01, 0.003};

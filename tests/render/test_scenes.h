@@ -34,7 +34,7 @@ core::CameraModel plain_camera(int width_px, int height_px);
 
 /// Same with barrel distortion, tangential terms and an off-centre principal point: bends the
 /// border by several percent of the image's width.
-core::CameraModel bent_camera(int width_px, int height_px);
+core::CameraModel distorted_camera(int width_px, int height_px);
 
 /// Coefficients from a fixed seed: constants in [0.1, 0.9], the others in [-0.3, 0.3]; every
 /// `unseen_every`-th patch unobserved (0: none).

@@ -30,7 +30,7 @@ TEST(LongestStraightSegment, ClosedFormForOneCoefficient) {
 // What the limit promises: the middle of a segment of that length is seen at most kSagittaLimitPx
 // beside the straight line between its ends, here measured on segments all over the image.
 TEST(LongestStraightSegment, KeepsItsPromise) {
-  const core::CameraModel camera = testing::bent_camera(640, 480);
+  const core::CameraModel camera = testing::distorted_camera(640, 480);
   const double s = longest_straight_segment(camera);
   double worst = 0;
   for (double x = 8; x < 632; x += 13) {
@@ -51,7 +51,7 @@ TEST(LongestStraightSegment, KeepsItsPromise) {
 
 TEST(InvalidRayMask, EmptyForCamerasWhoseCornersSee) {
   InvalidRayMask invalid;
-  EXPECT_TRUE(invalid.of(testing::bent_camera(64, 48)).empty());
+  EXPECT_TRUE(invalid.of(testing::distorted_camera(64, 48)).empty());
 }
 
 // r (1 - 0.4 r^2) grows up to r = 1 / sqrt(1.2), where it is 0.6086: with a focal length of 40

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "core/visibility/bent_triangles.h"
+#include "core/visibility/distorted_edges.h"
 
 #include <algorithm>
 #include <limits>
@@ -34,8 +34,8 @@ double distance_to_line(const Eigen::Vector2d& point, const Eigen::Vector2d& a,
 
 }  // namespace
 
-bool is_bent(const CameraModel& camera, const Eigen::Isometry3d& camera_from_object,
-             const std::array<Eigen::Vector3f, 3>& corners) {
+bool has_distorted_edge(const CameraModel& camera, const Eigen::Isometry3d& camera_from_object,
+                        const std::array<Eigen::Vector3f, 3>& corners) {
   std::array<Eigen::Vector3d, 3> in_camera;
   std::array<std::optional<Eigen::Vector2d>, 3> pixels;
   for (std::size_t i = 0; i < 3; ++i) {

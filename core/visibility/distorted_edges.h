@@ -13,7 +13,7 @@ namespace sheen::core {
 /// good image of it: the middle of an edge lies more than a quarter of a pixel beside its line,
 /// or a corner has no pixel and the triangle is not small enough to lie outside the image for
 /// that.
-bool is_bent(const CameraModel& camera, const Eigen::Isometry3d& camera_from_object,
-             const std::array<Eigen::Vector3f, 3>& corners);
+bool has_distorted_edge(const CameraModel& camera, const Eigen::Isometry3d& camera_from_object,
+                        const std::array<Eigen::Vector3f, 3>& corners);
 
 }  // namespace sheen::core
