@@ -183,7 +183,7 @@ void quadtree_on_cpu(benchmark::State& state) {
 }
 
 // As the study's scene ends up: 70 % of the patches one colour, 30 % with a linear base and,
-// mostly, a few bumps.
+// mostly, a few RBFs.
 void sparse(benchmark::State& state) {
   std::mt19937 random(1);
   fitting::sparse::LightFieldModel model(patch_count());
@@ -191,8 +191,8 @@ void sparse(benchmark::State& state) {
     fitting::sparse::PatchModel patch;
     if (random() % 10 < 3) {
       patch.base_terms = fitting::sparse::kLinearBase;
-      patch.bump_count = random() % 8;
-      for (std::size_t k = 0; k < patch.bump_count; ++k) {
+      patch.rbf_count = random() % 8;
+      for (std::size_t k = 0; k < patch.rbf_count; ++k) {
         patch.atom[k] = static_cast<std::uint16_t>(30 * k + random() % 30);
       }
     }

@@ -13,7 +13,7 @@ namespace sheen::fitting::sparse {
 namespace {
 
 constexpr float kLargestHalf = 65504.0f;
-// Blocks grow in steps of this many terms, so that a patch that wins and loses a bump stays put.
+// Blocks grow in steps of this many terms, so that a patch that wins and loses a RBF stays put.
 constexpr std::size_t kBlockTerms = 4;
 
 template <typename Colour>
@@ -38,7 +38,7 @@ WeightedColour LightFieldModel::evaluate(std::size_t patch_idx, const Eigen::Vec
 Eigen::Vector3f LightFieldModel::colour(std::size_t patch_idx, const Eigen::Vector2f& uv) const {
   const Slot& slot = slots_[patch_idx];
   Eigen::Vector3f sum = as_floats(slot.constant);
-  const std::size_t further = base_terms(slot) + bump_count(slot) - 1;
+  const std::size_t further = base_terms(slot) + rbf_count(slot) - 1;
   if (further == 0) return sum;
   const Eigen::Vector3f direction = core::hemisphere_from_disc(uv);
   std::size_t term = 0;
@@ -60,7 +60,7 @@ Eigen::Vector3f LightFieldModel::mean_colour(std::size_t patch_idx) const {
 
 std::size_t LightFieldModel::coefficient_count() const {
   std::size_t count = 0;
-  for (const Slot& slot : slots_) count += 3 * base_terms(slot) + 4 * bump_count(slot);
+  for (const Slot& slot : slots_) count += 3 * base_terms(slot) + 4 * rbf_count(slot);
   return count;
 }
 
@@ -68,7 +68,7 @@ PatchModel LightFieldModel::patch(std::size_t patch_idx) const {
   const Slot& slot = slots_[patch_idx];
   PatchModel model;
   model.base_terms = base_terms(slot);
-  model.bump_count = bump_count(slot);
+  model.rbf_count = rbf_count(slot);
   model.coefficient[0] = as_floats(slot.constant);
   for (std::size_t term = 1; term < model.term_count(); ++term) {
     const Term& stored = slot.further[term - 1];
@@ -81,18 +81,18 @@ PatchModel LightFieldModel::patch(std::size_t patch_idx) const {
 }
 
 std::size_t LightFieldModel::term_count(std::size_t patch_idx) const {
-  return base_terms(slots_[patch_idx]) + bump_count(slots_[patch_idx]);
+  return base_terms(slots_[patch_idx]) + rbf_count(slots_[patch_idx]);
 }
 
 bool LightFieldModel::store(std::size_t patch_idx, const PatchModel& model) {
   assert(model.base_terms == kConstantBase || model.base_terms == kLinearBase);
-  assert(model.bump_count <= kMaxBumps);
+  assert(model.rbf_count <= kMaxRbfs);
   // Make room.
   Slot& slot = slots_[patch_idx];
   const std::size_t terms = model.term_count();
   reserve(slot, terms - 1);
   // Write what differs.
-  const auto shape = static_cast<std::uint8_t>(model.bump_count |
+  const auto shape = static_cast<std::uint8_t>(model.rbf_count |
                                                (model.base_terms == kLinearBase ? kLinearBit : 0u));
   bool changed = std::exchange(slot.shape, shape) != shape;
   changed |= replace(slot.constant, rounded(model.coefficient[0]));
@@ -143,7 +143,7 @@ std::size_t LightFieldModel::base_terms(const Slot& slot) {
   return (slot.shape & kLinearBit) != 0 ? kLinearBase : kConstantBase;
 }
 
-std::size_t LightFieldModel::bump_count(const Slot& slot) {
+std::size_t LightFieldModel::rbf_count(const Slot& slot) {
   return slot.shape & static_cast<std::uint8_t>(~kLinearBit);
 }
 

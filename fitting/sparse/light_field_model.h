@@ -23,7 +23,7 @@ class LightFieldModel final : public LightField {
                                         const Eigen::Vector2f& uv) const override;
   [[nodiscard]] Eigen::Vector3f mean_colour(std::size_t patch_idx) const override;
   [[nodiscard]] const std::vector<std::uint8_t>& observed() const override { return observed_; }
-  /// Three per term and one per bump's atom.
+  /// Three per term and one per RBF's atom.
   [[nodiscard]] std::size_t coefficient_count() const override;
 
   /// Value of a patch towards `uv`, not clamped to [0, 1].
@@ -54,7 +54,7 @@ class LightFieldModel final : public LightField {
   struct Slot {
     std::unique_ptr<Term[]> further;  ///< all terms but the constant
     StoredColour constant{};
-    std::uint8_t shape = 0;     ///< bump count; kLinearBit for the linear base
+    std::uint8_t shape = 0;     ///< RBF count; kLinearBit for the linear base
     std::uint8_t capacity = 0;  ///< of `further`
   };
   static constexpr std::uint8_t kLinearBit = 0x80;
@@ -62,7 +62,7 @@ class LightFieldModel final : public LightField {
   static StoredColour rounded(const Eigen::Vector3f& colour);
   static bool replace(StoredColour& place, const StoredColour& value);
   static std::size_t base_terms(const Slot& slot);
-  static std::size_t bump_count(const Slot& slot);
+  static std::size_t rbf_count(const Slot& slot);
   static void reserve(Slot& slot, std::size_t further_terms);
 
   std::vector<Slot> slots_;

@@ -16,7 +16,7 @@ constexpr std::uint8_t kLinearBit = 0x80;
 
 struct PackedArrays {
   std::vector<std::uint8_t> shapes;
-  std::vector<std::uint16_t> bumps;
+  std::vector<std::uint16_t> rbfs;
   std::vector<Eigen::half> coefficients;
 };
 
@@ -31,8 +31,8 @@ json atoms_as_json() {
 
 void pack(const PatchModel& patch, PackedArrays& packed) {
   packed.shapes.push_back(static_cast<std::uint8_t>(
-      patch.bump_count | (patch.base_terms == kLinearBase ? kLinearBit : 0u)));
-  for (std::size_t i = 0; i < patch.bump_count; ++i) packed.bumps.push_back(patch.atom[i]);
+      patch.rbf_count | (patch.base_terms == kLinearBase ? kLinearBit : 0u)));
+  for (std::size_t i = 0; i < patch.rbf_count; ++i) packed.bumps.push_back(patch.atom[i]);
   for (std::size_t term = 0; term < patch.term_count(); ++term) {
     for (const float channel : patch.coefficient[term]) {
       packed.coefficients.emplace_back(channel);
@@ -45,18 +45,18 @@ PatchModel shape_from(std::byte code) {
   const auto value = std::to_integer<std::uint8_t>(code);
   PatchModel patch;
   patch.base_terms = (value & kLinearBit) != 0 ? kLinearBase : kConstantBase;
-  patch.bump_count = value & static_cast<std::uint8_t>(~kLinearBit);
-  if (patch.bump_count > kMaxBumps) throw ModelFault("a patch has more bumps than sheen allows");
+  patch.rbf_count = value & static_cast<std::uint8_t>(~kLinearBit);
+  if (patch.rbf_count > kMaxRbfs) throw ModelFault("a patch has more RBFs than sheen allows");
   return patch;
 }
 
 void read_atoms(std::span<const std::byte> codes, PatchModel& patch) {
   std::bitset<kMaxAtoms> seen;
-  for (std::size_t i = 0; i < patch.bump_count; ++i) {
+  for (std::size_t i = 0; i < patch.rbf_count; ++i) {
     std::uint16_t id = 0;
     std::memcpy(&id, codes.data() + 2 * i, sizeof id);
-    if (id >= atoms().size()) throw ModelFault("a bump names an atom that does not exist");
-    if (seen[id]) throw ModelFault("a patch has two bumps of the same atom");
+    if (id >= atoms().size()) throw ModelFault("a RBF names an atom that does not exist");
+    if (seen[id]) throw ModelFault("a patch has two RBFs of the same atom");
     seen.set(id);
     patch.atom[i] = id;
   }
@@ -81,7 +81,7 @@ ModelPart encode_model(const LightField& light_field) {
   part.parameters = {{"atoms", atoms_as_json()}};
   part.arrays["shapes"] = std::as_bytes(std::span(packed->shapes));
   // glTF knows no empty bufferView.
-  if (!packed->bumps.empty()) part.arrays["bumps"] = std::as_bytes(std::span(packed->bumps));
+  if (!packed->rbfs.empty()) part.arrays["bumps"] = std::as_bytes(std::span(packed->rbfs));
   part.arrays["coefficients"] = std::as_bytes(std::span(packed->coefficients));
   part.owner = packed;
   return part;
@@ -94,28 +94,28 @@ std::unique_ptr<const LightField> decode_model(const ModelPart& part,
   }
   // Count first: the shapes say how long the other arrays must be.
   const auto shapes = required_bytes(part, "shapes", observed.size());
-  std::size_t bump_count = 0;
+  std::size_t rbf_count = 0;
   std::size_t term_count = 0;
   for (const std::byte code : shapes) {
     const PatchModel patch = shape_from(code);
-    bump_count += patch.bump_count;
+    rbf_count += patch.rbf_count;
     term_count += patch.term_count();
   }
-  const auto bumps =
-      bump_count > 0 ? required_bytes(part, "bumps", 2 * bump_count) : std::span<const std::byte>();
+  const auto rbfs =
+      rbf_count > 0 ? required_bytes(part, "bumps", 2 * rbf_count) : std::span<const std::byte>();
   const std::vector<Eigen::half> coefficients =
       required_halves(part, "coefficients", 3 * term_count);
   // Take the patches out one after the other.
   auto model = std::make_unique<LightFieldModel>(observed.size());
-  std::size_t bump = 0;
+  std::size_t rbf = 0;
   std::size_t term = 0;
   for (std::size_t i = 0; i < observed.size(); ++i) {
     PatchModel patch = shape_from(shapes[i]);
-    read_atoms(bumps.subspan(2 * bump, 2 * patch.bump_count), patch);
+    read_atoms(rbfs.subspan(2 * rbf, 2 * patch.rbf_count), patch);
     read_coefficients(std::span(coefficients).subspan(3 * term, 3 * patch.term_count()), patch);
     model->store(i, patch);
     model->store_observed(i, observed[i] != 0);
-    bump += patch.bump_count;
+    rbf += patch.rbf_count;
     term += patch.term_count();
   }
   return model;

@@ -14,10 +14,10 @@ Eigen::Vector3f evaluate(const PatchModel& model, const Eigen::Vector2f& uv) {
       colour += direction[static_cast<Eigen::Index>(axis)] * model.coefficient[1 + axis];
     }
   }
-  for (std::size_t bump = 0; bump < model.bump_count; ++bump) {
-    const Atom& atom = atoms()[model.atom[bump]];
+  for (std::size_t rbf = 0; rbf < model.rbf_count; ++rbf) {
+    const Atom& atom = atoms()[model.atom[rbf]];
     const float distance = (direction.head<2>() - atom.center).norm() / atom.support;
-    colour += iwls::wendland(distance) * model.coefficient[model.base_terms + bump];
+    colour += iwls::wendland(distance) * model.coefficient[model.base_terms + rbf];
   }
   return colour;
 }
@@ -26,8 +26,8 @@ Eigen::Vector3f disc_mean(const PatchModel& model) {
   Eigen::Vector3f colour = model.coefficient[0];
   // x and y cancel; the mean of z = sqrt(1 - r^2) over the disc is the integral of 2 r z dr = 2/3.
   if (model.base_terms == kLinearBase) colour += 2.0f / 3.0f * model.coefficient[3];
-  for (std::size_t bump = 0; bump < model.bump_count; ++bump) {
-    colour += atom_means()[model.atom[bump]] * model.coefficient[model.base_terms + bump];
+  for (std::size_t rbf = 0; rbf < model.rbf_count; ++rbf) {
+    colour += atom_means()[model.atom[rbf]] * model.coefficient[model.base_terms + rbf];
   }
   return colour;
 }

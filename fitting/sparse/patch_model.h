@@ -10,7 +10,7 @@
 
 namespace sheen::fitting::sparse {
 
-/// A compactly supported bump on the disc of directions: Wendland's function (eq. 5) round a cell
+/// A compactly supported RBF on the disc of directions: Wendland's function (eq. 5) round a cell
 /// of the quadtree.
 struct Atom {
   Eigen::Vector2f center;  ///< on the unit disc's plane
@@ -30,23 +30,23 @@ std::span<const Atom> atoms();
 /// Ids of the atoms round a direction: of each level the cell that holds it and the eight about it.
 std::span<const std::uint16_t> atoms_round(const Eigen::Vector2f& uv);
 
-/// Mean of every atom's bump over the unit disc, as if its colour were 1 (by area of the disc).
+/// Mean of every atom's RBF over the unit disc, as if its colour were 1 (by area of the disc).
 std::span<const float> atom_means();
 
 /// Terms of the base: the constant, or the constant and the direction's x, y, z in the patch frame.
 inline constexpr std::size_t kConstantBase = 1;
 inline constexpr std::size_t kLinearBase = 4;
-inline constexpr std::size_t kMaxBumps = 24;
+inline constexpr std::size_t kMaxRbfs = 24;
 
 /// Radiance of one patch: colour(x) = base(x) + sum_k c_k theta(|x - center_k| / support_k).
 struct PatchModel {
-  std::size_t base_terms = kConstantBase;       ///< kConstantBase or kLinearBase
-  std::size_t bump_count = 0;                   ///< <= kMaxBumps
-  std::array<std::uint16_t, kMaxBumps> atom{};  ///< ids, distinct
-  /// Base terms first, then one per bump; RGB, display-referred sRGB.
-  std::array<Eigen::Vector3f, kLinearBase + kMaxBumps> coefficient{};
+  std::size_t base_terms = kConstantBase;      ///< kConstantBase or kLinearBase
+  std::size_t rbf_count = 0;                   ///< <= kMaxRbfs
+  std::array<std::uint16_t, kMaxRbfs> atom{};  ///< ids, distinct
+  /// Base terms first, then one per RBF; RGB, display-referred sRGB.
+  std::array<Eigen::Vector3f, kLinearBase + kMaxRbfs> coefficient{};
 
-  [[nodiscard]] std::size_t term_count() const { return base_terms + bump_count; }
+  [[nodiscard]] std::size_t term_count() const { return base_terms + rbf_count; }
 };
 
 /// Value of a patch towards `uv` (clamped to the disc), not clamped to [0, 1].

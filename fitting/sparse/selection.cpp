@@ -97,7 +97,7 @@ float Selection::score(const StepwiseFit& fit) const {
     return std::numeric_limits<float>::infinity();
   }
   const float economy = economy_ * n / (n + kEconomyOnset);
-  const auto numbers = static_cast<float>(3 * terms.count + kPriceOfAtom * terms.bump_count());
+  const auto numbers = static_cast<float>(3 * terms.count + kPriceOfAtom * terms.rbf_count());
   return 1.5f * n * std::log(generalised_error(fit) + tolerance_ * tolerance_) +
          0.5f * economy * numbers * std::log(std::max(2.0f, n));
 }
@@ -114,10 +114,10 @@ Selection::Scored Selection::grown(std::size_t base_terms) {
   }
   Scored best{fit_.terms(), score(fit_)};
   int in_vain = 0;
-  while (in_vain <= kPatience && fit_.terms().bump_count() < kMaxBumps) {
-    const auto bump = take_best(candidates);
-    if (!bump) break;
-    if (!fit_.push(design_, *bump)) continue;
+  while (in_vain <= kPatience && fit_.terms().rbf_count() < kMaxRbfs) {
+    const auto rbf = take_best(candidates);
+    if (!rbf) break;
+    if (!fit_.push(design_, *rbf)) continue;
     follow(candidates);
     ++fits_;
     const float reached = score(fit_);
@@ -131,10 +131,10 @@ Selection::Scored Selection::grown(std::size_t base_terms) {
 }
 
 Selection::Scored Selection::pruned(Scored best) {
-  while (best.terms.bump_count() > 0) {
+  while (best.terms.rbf_count() > 0) {
     fit(best.terms);
     TermList fewer = fit_.terms();
-    fewer.erase(fit_.weakest_bump());
+    fewer.erase(fit_.weakest_rbf());
     const float before = best.score;
     try_terms(fewer, best);
     if (!(best.score < before)) break;
@@ -165,7 +165,7 @@ TermList Selection::best_terms() {
 }
 
 // Judges every sample by the residual it would have had were it not in the fit: a lone outlier with
-// a bump of its own stands out, while the samples of a highlight vouch for each other. `fit_` holds
+// a RBF of its own stands out, while the samples of a highlight vouch for each other. `fit_` holds
 // the fit to judge by.
 void Selection::judge_samples() {
   constexpr float least_left = 0.05f;
@@ -263,9 +263,9 @@ SelectedModel Selection::choose(std::span<const DirectedColour> samples) {
   return outcome(samples, terms);
 }
 
-std::optional<TermList> Selection::with_best_bump(const TermList& terms,
-                                                  const Eigen::Vector2f& seen_at) {
-  if (terms.bump_count() == kMaxBumps) return std::nullopt;
+std::optional<TermList> Selection::with_best_rbf(const TermList& terms,
+                                                 const Eigen::Vector2f& seen_at) {
+  if (terms.rbf_count() == kMaxRbfs) return std::nullopt;
   fit(terms);
   const std::size_t rows = design_.padded_rows();
   std::optional<FunctionIdx> best;
@@ -309,12 +309,12 @@ SelectedModel Selection::step(std::span<const DirectedColour> samples, const Pat
     }
     try_terms(linear, best);
   }
-  // Add a bump, take one away.
-  if (const auto more = with_best_bump(best.terms, seen_at)) try_terms(*more, best);
-  if (best.terms.bump_count() > 1) {
+  // Add a RBF, take one away.
+  if (const auto more = with_best_rbf(best.terms, seen_at)) try_terms(*more, best);
+  if (best.terms.rbf_count() > 1) {
     fit(best.terms);
     TermList fewer = fit_.terms();
-    fewer.erase(fit_.weakest_bump());
+    fewer.erase(fit_.weakest_rbf());
     try_terms(fewer, best);
   }
   return outcome(samples, best.terms);

@@ -48,7 +48,7 @@ class Selection {
   SelectedModel choose(std::span<const DirectedColour> samples);
 
   /// One step from `model`, given the sample that was just seen: refit, then at most one move
-  /// each: the base upgraded, the best of the bumps round the sample added, the weakest removed.
+  /// each: the base upgraded, the best of the RBFs round the sample added, the weakest removed.
   SelectedModel step(std::span<const DirectedColour> samples, const PatchModel& model,
                      const Eigen::Vector2f& seen_at);
 
@@ -81,8 +81,8 @@ class Selection {
   void judge_samples();
   [[nodiscard]] bool set_factors(std::span<const DirectedColour> samples,
                                  std::span<const float> residuals, Judgement judgement);
-  [[nodiscard]] std::optional<TermList> with_best_bump(const TermList& terms,
-                                                       const Eigen::Vector2f& seen_at);
+  [[nodiscard]] std::optional<TermList> with_best_rbf(const TermList& terms,
+                                                      const Eigen::Vector2f& seen_at);
   void fit(const TermList& terms);
   void try_terms(const TermList& terms, Scored& best);
   [[nodiscard]] SelectedModel outcome(std::span<const DirectedColour> samples,

@@ -9,7 +9,7 @@
 
 namespace sheen::fitting::sparse {
 
-/// Patches with as many terms as their samples ask for: one colour, a linear base, bumps
+/// Patches with as many terms as their samples ask for: one colour, a linear base, RBFs
 /// (patch_model.h). While views arrive a patch is looked at again when a sample was predicted badly
 /// or its samples have grown by a third; `finish` chooses the terms of every touched patch anew,
 /// which makes the result independent of the order of views as long as all samples are kept.

@@ -12,15 +12,15 @@ namespace {
 /// Samples within this distance on the disc share one sample's weight.
 constexpr float kReach = 0.1f;
 
-/// Pull on the base's slopes and on bumps: a constant part that fades as samples arrive, and a part
+/// Pull on the base's slopes and on RBFs: a constant part that fades as samples arrive, and a part
 /// that grows with them, because what bends a fit beyond its samples is pose and mesh error, which
 /// does not average out along an arc: without it more samples make arcs worse.
 struct Ridge {
   float slope = 0.02f;
   float slope_growth = 0.01f;  ///< per unit of weight
-  float bump = 0.03f;
-  float bump_growth = 0.01f;  ///< per unit of weight under the bump
-  float onset = 96.0f;        ///< weight at which half of the growth is reached
+  float rbf = 0.03f;
+  float rbf_growth = 0.01f;  ///< per unit of weight under the RBF
+  float onset = 96.0f;       ///< weight at which half of the growth is reached
 };
 constexpr Ridge kRidge;
 
@@ -52,7 +52,7 @@ TermList TermList::base(std::size_t base_terms) {
 
 TermList TermList::of(const PatchModel& model) {
   TermList terms = base(model.base_terms);
-  for (std::size_t i = 0; i < model.bump_count; ++i) terms.push(kLinearBase + model.atom[i]);
+  for (std::size_t i = 0; i < model.rbf_count; ++i) terms.push(kLinearBase + model.atom[i]);
   return terms;
 }
 
@@ -70,7 +70,7 @@ void Design::set_ridge(FunctionIdx idx) {
     ridge_[idx] = idx == 0 ? 0.0f : kRidge.slope + kRidge.slope_growth * growth * total_weight_;
   } else {
     const float covered = columns::dot(functions_[idx], root_weight_, padded_rows());
-    ridge_[idx] = kRidge.bump + kRidge.bump_growth * growth * covered;
+    ridge_[idx] = kRidge.rbf + kRidge.rbf_growth * growth * covered;
   }
 }
 
@@ -221,7 +221,7 @@ PatchModel StepwiseFit::model() const {
   PatchModel model;
   const Coefficients c = coefficients();
   model.base_terms = terms_.base_terms();
-  model.bump_count = terms_.bump_count();
+  model.rbf_count = terms_.rbf_count();
   for (std::size_t i = 0; i < terms_.count; ++i) {
     model.coefficient[i] = c[i];
     if (i >= model.base_terms) {
@@ -234,7 +234,7 @@ PatchModel StepwiseFit::model() const {
 
 // Leaving out term j raises the penalised error by c_j^2 / (G^-1)_jj; the diagonal of the inverse
 // is the squared norm of column j of L^-1.
-std::size_t StepwiseFit::weakest_bump() const {
+std::size_t StepwiseFit::weakest_rbf() const {
   const std::size_t count = terms_.count;
   const Coefficients c = coefficients();
   std::array<float, kMaxTerms> inverse_column;

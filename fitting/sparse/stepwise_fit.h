@@ -17,7 +17,7 @@
 
 namespace sheen::fitting::sparse {
 
-inline constexpr std::size_t kMaxTerms = kLinearBase + kMaxBumps;
+inline constexpr std::size_t kMaxTerms = kLinearBase + kMaxRbfs;
 
 /// Number of a function: 0 constant, 1 to 3 the direction's x, y, z, from 4 on the atoms.
 using FunctionIdx = std::size_t;
@@ -35,7 +35,7 @@ struct TermList {
   [[nodiscard]] std::size_t base_terms() const {
     return count > 1 && function[1] == 1 ? kLinearBase : kConstantBase;
   }
-  [[nodiscard]] std::size_t bump_count() const { return count - base_terms(); }
+  [[nodiscard]] std::size_t rbf_count() const { return count - base_terms(); }
   /// The base alone.
   static TermList base(std::size_t base_terms);
   /// The functions of a model.
@@ -123,8 +123,8 @@ class StepwiseFit {
   }
   /// The terms as a model.
   [[nodiscard]] PatchModel model() const;
-  /// Position of the bump whose loss costs the penalised fit least; there must be one.
-  [[nodiscard]] std::size_t weakest_bump() const;
+  /// Position of the RBF whose loss costs the penalised fit least; there must be one.
+  [[nodiscard]] std::size_t weakest_rbf() const;
 
  private:
   using Coefficients = std::array<Eigen::Vector3f, kMaxTerms>;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Sparse patches: constant or linear base, plus Wendland bumps (eq. 5) from a fixed dictionary.
-// A patch's first texel: the constant, and in alpha its number of bumps + 32 for the linear base +
-// 64 when it was observed. Then three texels of the linear base, if any, and one per bump with its
+// Sparse patches: constant or linear base, plus Wendland RBFs (eq. 5) from a fixed dictionary.
+// A patch's first texel: the constant, and in alpha its number of RBFs + 32 for the linear base +
+// 64 when it was observed. Then three texels of the linear base, if any, and one per RBF with its
 // atom in alpha.
 // PATCH_COUNT is written in front of this text; every patch has the same number of texels, which
 // grows with the model.

@@ -22,9 +22,9 @@ constexpr float kLinearFlag = 32.0f;
 constexpr float kObservedFlag = 64.0f;
 static_assert(fitting::kUnseenWeight == 1.0f / 1024.0f, "sparse.glsl says so too");
 
-// Room grows in steps of this many texels, so that a growing model is not sent anew for each bump.
+// Room grows in steps of this many texels, so that a growing model is not sent anew for each RBF.
 constexpr std::size_t kTexelStep = 4;
-constexpr std::size_t kMostTexels = kLinearBase + fitting::sparse::kMaxBumps;
+constexpr std::size_t kMostTexels = kLinearBase + fitting::sparse::kMaxRbfs;
 
 // Centre and reciprocal support of every atom, one RGBA32F texel each.
 std::vector<float> atom_table() {
@@ -41,11 +41,11 @@ void write_texels(const PatchModel& patch, bool observed, std::span<Eigen::half>
       texels[4 * term + channel] =
           Eigen::half(patch.coefficient[term][static_cast<Eigen::Index>(channel)]);
     }
-    const bool is_bump = term >= patch.base_terms;
+    const bool is_rbf = term >= patch.base_terms;
     texels[4 * term + 3] =
-        Eigen::half(is_bump ? static_cast<float>(patch.atom[term - patch.base_terms]) : 0.0f);
+        Eigen::half(is_rbf ? static_cast<float>(patch.atom[term - patch.base_terms]) : 0.0f);
   }
-  texels[3] = Eigen::half(static_cast<float>(patch.bump_count) +
+  texels[3] = Eigen::half(static_cast<float>(patch.rbf_count) +
                           (patch.base_terms == kLinearBase ? kLinearFlag : 0.0f) +
                           (observed ? kObservedFlag : 0.0f));
   std::ranges::fill(texels.subspan(4 * patch.term_count()), Eigen::half(0.0f));

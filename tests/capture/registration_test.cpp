@@ -26,7 +26,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// A closed ball with a bump on every side of another size, so that every turn shows.
+/// A closed ball with a RBF on every side of another size, so that every turn shows.
 core::Mesh bumpy_ball() {
   constexpr int rings = 40;
   constexpr int sectors = 80;

@@ -22,7 +22,7 @@ std::vector<std::string> patches_of(const LightField& light_field) {
   if (const auto* model = dynamic_cast<const sparse::LightFieldModel*>(&light_field)) {
     for (std::size_t i = 0; i < kPatches; ++i) {
       const sparse::PatchModel patch = model->patch(i);
-      patches[i].append(reinterpret_cast<const char*>(patch.atom.data()), patch.bump_count);
+      patches[i].append(reinterpret_cast<const char*>(patch.atom.data()), patch.rbf_count);
       patches[i].append(reinterpret_cast<const char*>(patch.coefficient.data()),
                         patch.term_count() * sizeof(patch.coefficient[0]));
     }

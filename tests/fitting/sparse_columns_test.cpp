@@ -48,14 +48,14 @@ TEST(SparseColumns, WendlandIsTheFunctionOfTheDistance) {
   const Directions at(1);
   Column weight{};
   for (std::size_t row = 0; row < kSamples; ++row) weight.row[row] = 0.5f;
-  Column bump;
-  columns::wendland(at.u, at.v, weight, kRows, 0.2f, -0.1f, 0.7f, bump);
+  Column rbf;
+  columns::wendland(at.u, at.v, weight, kRows, 0.2f, -0.1f, 0.7f, rbf);
   for (std::size_t row = 0; row < kSamples; ++row) {
     const float distance = std::hypot(at.u.row[row] - 0.2f, at.v.row[row] + 0.1f) / 0.7f;
-    EXPECT_NEAR(bump.row[row], 0.5f * iwls::wendland(distance), kRounding);
+    EXPECT_NEAR(rbf.row[row], 0.5f * iwls::wendland(distance), kRounding);
   }
   // Nothing behind the last sample.
-  for (std::size_t row = kSamples; row < kRows; ++row) EXPECT_EQ(bump.row[row], 0.0f);
+  for (std::size_t row = kSamples; row < kRows; ++row) EXPECT_EQ(rbf.row[row], 0.0f);
 }
 
 TEST(SparseColumns, CrowdingCountsNeighboursAndItself) {

@@ -38,7 +38,7 @@ PatchModel patch_of(const Representation& representation, std::size_t patch_idx 
   return dynamic_cast<const LightFieldModel&>(representation.light_field()).patch(patch_idx);
 }
 
-/// A highlight as wide as a bump of the finest level, on grey.
+/// A highlight as wide as a RBF of the finest level, on grey.
 Eigen::Vector3d highlight(double u, double v) {
   const double squared = (u - 0.3) * (u - 0.3) + (v + 0.2) * (v + 0.2);
   return Eigen::Vector3d(0.3, 0.25, 0.2) +
@@ -72,12 +72,12 @@ TEST(SparseFit, MattePatchEndsAsOneColour) {
   EXPECT_LT((mean - truth).cwiseAbs().maxCoeff(), 0.004);
 }
 
-TEST(SparseFit, SingleBumpIsFoundWithItsAtom) {
+TEST(SparseFit, SingleRbfIsFoundWithItsAtom) {
   // The lumisphere is the constant and one atom: the fit must name it and no other.
   const std::uint16_t atom_idx = 40;
   PatchModel truth;
   truth.coefficient[0] = Eigen::Vector3f(0.3f, 0.3f, 0.3f);
-  truth.bump_count = 1;
+  truth.rbf_count = 1;
   truth.atom[0] = atom_idx;
   truth.coefficient[1] = Eigen::Vector3f(0.4f, 0.3f, 0.2f);
   const auto representation = make_sparse();
@@ -86,7 +86,7 @@ TEST(SparseFit, SingleBumpIsFoundWithItsAtom) {
   });
   const PatchModel fitted = patch_of(*representation);
   ASSERT_EQ(fitted.base_terms, kConstantBase);
-  ASSERT_EQ(fitted.bump_count, 1u);
+  ASSERT_EQ(fitted.rbf_count, 1u);
   EXPECT_EQ(fitted.atom[0], atom_idx);
   // Two terms of three numbers and one index.
   EXPECT_EQ(representation->light_field().coefficient_count(), 7u);
@@ -99,7 +99,7 @@ TEST(SparseFit, LinearLumisphereTakesTheLinearBase) {
   });
   const PatchModel fitted = patch_of(*representation);
   EXPECT_EQ(fitted.base_terms, kLinearBase);
-  EXPECT_EQ(fitted.bump_count, 0u);
+  EXPECT_EQ(fitted.rbf_count, 0u);
 }
 
 TEST(SparseFit, HighlightIsBetterThanOneColour) {

@@ -32,7 +32,7 @@ Eigen::Vector3d formula(const PatchModel& patch, double u, double v) {
   if (patch.base_terms == 4) {
     colour += u * c(1) + v * c(2) + std::sqrt(std::max(0.0, 1 - u * u - v * v)) * c(3);
   }
-  for (std::size_t i = 0; i < patch.bump_count; ++i) {
+  for (std::size_t i = 0; i < patch.rbf_count; ++i) {
     const Atom& atom = atoms()[patch.atom[i]];
     const double d = std::hypot(u - static_cast<double>(atom.center.x()),
                                 v - static_cast<double>(atom.center.y())) /
@@ -43,7 +43,7 @@ Eigen::Vector3d formula(const PatchModel& patch, double u, double v) {
 }
 
 bool same(const PatchModel& a, const PatchModel& b) {
-  return a.base_terms == b.base_terms && a.bump_count == b.bump_count && a.atom == b.atom &&
+  return a.base_terms == b.base_terms && a.rbf_count == b.rbf_count && a.atom == b.atom &&
          std::equal(a.coefficient.begin(),
                     a.coefficient.begin() + static_cast<std::ptrdiff_t>(a.term_count()),
                     b.coefficient.begin());
@@ -72,7 +72,7 @@ TEST(SparseAtoms, AreTheQuadtreesCells) {
   EXPECT_EQ(distinct.size(), 304u);
 }
 
-// An atom inside the disc: over the plane its bump has the integral
+// An atom inside the disc: over the plane its RBF has the integral
 // 2 pi h^2 int_0^1 (1-d)^4 (4d+1) d dd = 2 pi h^2 (4 B(3,5) + B(2,5)) = 2 pi h^2 (4/105 + 1/30)
 // = pi h^2 / 7, and the disc has the area pi: the mean is h^2 / 7. Atoms of the finest level,
 // h = 5/8, lie inside when their centre is within 3/8 of the middle: in units of 1/16 (1, 1), (1,
@@ -92,7 +92,7 @@ TEST(SparseAtoms, MeanIsTheIntegral) {
 TEST(SparsePatch, MeanIsTheMeanOverTheDisc) {
   std::mt19937 random(kSeed);
   for (int repeat = 0; repeat < 5; ++repeat) {
-    const PatchModel patch = random_patch(random, kMaxBumps);
+    const PatchModel patch = random_patch(random, kMaxRbfs);
     constexpr int rings = 300;
     constexpr int spokes = 300;
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -111,7 +111,7 @@ TEST(SparsePatch, MeanIsTheMeanOverTheDisc) {
 // Floats against doubles: at most 28 terms of size below 1, each off by a few 2^-24; near the rim
 // z = sqrt(1 - r^2) turns an error of 2^-24 in r^2 into 2^-12 = 2.4e-4 of a coefficient of 0.2.
 TEST(SparseModel, EvaluatesTheFormula) {
-  const LightFieldModel model = random_sparse(200, kMaxBumps, 0, kSeed);
+  const LightFieldModel model = random_sparse(200, kMaxRbfs, 0, kSeed);
   for (std::size_t i = 0; i < model.patch_count(); ++i) {
     for (const Eigen::Vector2f& uv : fitting::testing::disc_grid(6, 12)) {
       const WeightedColour value = model.evaluate(i, uv);
@@ -127,7 +127,7 @@ TEST(SparseModel, EvaluatesTheFormula) {
 // Behind the horizon counts as on it: (1.8, -2.4) = 3 (0.6, -0.8). Rounding may leave the second
 // 2^-24 inside the rim, so that z is up to 3.5e-4 of a coefficient of 0.2.
 TEST(SparseModel, DirectionsOutsideAreOnTheRim) {
-  const LightFieldModel model = random_sparse(50, kMaxBumps, 0, kSeed);
+  const LightFieldModel model = random_sparse(50, kMaxRbfs, 0, kSeed);
   for (std::size_t i = 0; i < model.patch_count(); ++i) {
     EXPECT_LT(
         (model.evaluate(i, {1.8f, -2.4f}).colour_sum - model.evaluate(i, {0.6f, -0.8f}).colour_sum)
@@ -153,7 +153,7 @@ TEST(SparseModel, StoreTellsWhetherAnythingChanged) {
   std::mt19937 random(kSeed);
   LightFieldModel model(1);
   for (int repeat = 0; repeat < 200; ++repeat) {
-    const PatchModel next = random_patch(random, kMaxBumps);
+    const PatchModel next = random_patch(random, kMaxRbfs);
     const PatchModel before = model.patch(0);
     const bool changed = model.store(0, next);
     const PatchModel after = model.patch(0);
@@ -184,13 +184,13 @@ TEST(SparseModel, TinyChangesAreNone) {
   EXPECT_EQ(model.patch(0).coefficient[0], Eigen::Vector3f(65504.0f, -65504.0f, 0.0f));
 }
 
-// 3 per term, 1 per bump: 3 for a constant, 3 * 4 + 4 * 2 for a linear base and two bumps.
+// 3 per term, 1 per RBF: 3 for a constant, 3 * 4 + 4 * 2 for a linear base and two RBFs.
 TEST(SparseModel, CountsEveryStoredNumber) {
   LightFieldModel model(2);
   EXPECT_EQ(model.coefficient_count(), 6u);
   PatchModel patch;
   patch.base_terms = kLinearBase;
-  patch.bump_count = 2;
+  patch.rbf_count = 2;
   patch.atom[0] = 7;
   patch.atom[1] = 70;
   patch.coefficient.fill(Eigen::Vector3f::Zero());
@@ -209,7 +209,7 @@ TEST(SparseModel, PatchesMayBeWrittenByThreads) {
     for (std::size_t i = begin; i < patches; i += 4) {
       for (unsigned repeat = 0; repeat < 3; ++repeat) {
         std::mt19937 random(static_cast<unsigned>(3 * i) + repeat);
-        together.store(i, random_patch(random, kMaxBumps));
+        together.store(i, random_patch(random, kMaxRbfs));
         together.store_observed(i, i % 3 != 0);
       }
     }
@@ -221,7 +221,7 @@ TEST(SparseModel, PatchesMayBeWrittenByThreads) {
   LightFieldModel alone(patches);
   for (std::size_t i = 0; i < patches; ++i) {
     std::mt19937 random(static_cast<unsigned>(3 * i) + 2);
-    alone.store(i, random_patch(random, kMaxBumps));
+    alone.store(i, random_patch(random, kMaxRbfs));
     alone.store_observed(i, i % 3 != 0);
   }
   EXPECT_EQ(together.observed(), alone.observed());
@@ -323,10 +323,10 @@ TEST_F(SparseCodec, EveryOtherLengthIsRefused) {
 
 TEST(SparseCodecLimits, BrokenPatchesAreRefused) {
   const nlohmann::json parameters = encode_model(LightFieldModel(1)).parameters;
-  const auto accepted = [&](const std::string& shape, const std::string& bumps,
+  const auto accepted = [&](const std::string& shape, const std::string& rbfs,
                             std::size_t coefficient_bytes) {
     return decoded({{"shapes", shape},
-                    {"bumps", bumps},
+                    {"bumps", RBFs},
                     {"coefficients", std::string(coefficient_bytes, '\0')}},
                    parameters, 1)
         .has_value();
@@ -339,7 +339,7 @@ TEST(SparseCodecLimits, BrokenPatchesAreRefused) {
     }
     return bytes;
   };
-  // Two bumps on a constant: 3 terms of 6 bytes.
+  // Two RBFs on a constant: 3 terms of 6 bytes.
   EXPECT_TRUE(accepted("\x02", ids({5, 6}), 18));
   EXPECT_TRUE(accepted("\x02", ids({44, 300}), 18));  // 300 mod 256 is 44: two atoms all the same
   EXPECT_TRUE(accepted("\x02", ids({5, 303}), 18));
@@ -347,7 +347,7 @@ TEST(SparseCodecLimits, BrokenPatchesAreRefused) {
   EXPECT_FALSE(accepted("\x02", ids({5, 304}), 18));    // there is no atom 304
   EXPECT_FALSE(accepted("\x02", ids({5, 0xffff}), 18));
   EXPECT_FALSE(accepted("\x02", "\x05\x06", 18));  // one byte each, as before
-  // 24 bumps are allowed, 25 are not.
+  // 24 RBFs are allowed, 25 are not.
   std::string many;
   for (unsigned id = 0; id < 25; ++id) many += ids({10 * id});
   EXPECT_TRUE(accepted("\x18", many.substr(0, 48), 25 * 6));
@@ -361,12 +361,12 @@ TEST_F(SparseCodec, ForeignDictionariesAreRefused) {
   EXPECT_FALSE(decoded(arrays_, parameters_, kPatches));
 }
 
-// The whole file, with patches of one colour only (no bump anywhere) and without.
+// The whole file, with patches of one colour only (no RBF anywhere) and without.
 TEST(SparseModelFile, ReadsBackBitByBit) {
-  for (const std::size_t most_bumps : {std::size_t{0}, kMaxBumps}) {
+  for (const std::size_t most_rbfs : {std::size_t{0}, kMaxRbfs}) {
     const fitting::testing::TemporaryFolder folder;
     const core::Mesh mesh = fitting::testing::octahedron();
-    const LightFieldModel model = random_sparse(mesh.positions.size(), most_bumps, 3, kSeed);
+    const LightFieldModel model = random_sparse(mesh.positions.size(), most_rbfs, 3, kSeed);
     write_model(folder / "a.glb", mesh, model);
     const Model read = read_model(folder / "a.glb");
     EXPECT_EQ(read.light_field->representation(), "sparse");

@@ -14,7 +14,7 @@
 namespace sheen::render {
 namespace {
 
-using fitting::sparse::kMaxBumps;
+using fitting::sparse::kMaxRbfs;
 using fitting::sparse::PatchModel;
 using fitting::testing::random_patch;
 using fitting::testing::random_sparse;
@@ -34,17 +34,17 @@ TEST_P(SparseAgreement, GpuEqualsReference) {
   const RenderedView cpu = make_reference_surface_renderer(mesh, model, 1)->render(camera, pose);
   const cv::Mat interior = testing::common_interior(gpu.mask, cpu.mask, 1);
   const testing::Difference found = testing::difference(gpu.image, cpu.image, interior);
-  std::cout << "at most " << GetParam() << " bumps: mean " << found.mean << " max " << found.largest
+  std::cout << "at most " << GetParam() << " RBFs: mean " << found.mean << " max " << found.largest
             << " over " << found.pixels << " pixels, seed " << kSeed << "\n";
   EXPECT_GT(found.pixels, 5000u);
   EXPECT_LE(found.largest, 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(BumpCounts, SparseAgreement,
-                         ::testing::Values(std::size_t{0}, std::size_t{5}, kMaxBumps));
+INSTANTIATE_TEST_SUITE_P(RbfCounts, SparseAgreement,
+                         ::testing::Values(std::size_t{0}, std::size_t{5}, kMaxRbfs));
 
 // Four halfs per texel, and as many texels as the largest patch needs, in steps of four: one for
-// constants, 1 + 3 + 2 -> 8 for two bumps on a linear base, 28 at most.
+// constants, 1 + 3 + 2 -> 8 for two RBFs on a linear base, 28 at most.
 TEST(SparsePatchShader, SendsWhatTheLargestPatchNeeds) {
   const auto context = make_osmesa_context();
   const gl::Functions gl = gl::load_functions(*context);
@@ -55,7 +55,7 @@ TEST(SparsePatchShader, SendsWhatTheLargestPatchNeeds) {
   // A patch outgrows the buffer: everything goes over.
   PatchModel patch;
   patch.base_terms = fitting::sparse::kLinearBase;
-  patch.bump_count = 2;
+  patch.rbf_count = 2;
   patch.atom[0] = 4;
   patch.atom[1] = 44;
   patch.coefficient.fill(Eigen::Vector3f::Constant(0.1f));
@@ -64,8 +64,8 @@ TEST(SparsePatchShader, SendsWhatTheLargestPatchNeeds) {
   // From then on only what changed.
   EXPECT_EQ(shader->upload(two), 2u * 8u * 8u);
   // The largest patch there is.
-  patch.bump_count = kMaxBumps;
-  for (std::size_t i = 0; i < kMaxBumps; ++i) patch.atom[i] = static_cast<std::uint16_t>(3 * i);
+  patch.rbf_count = kMaxRbfs;
+  for (std::size_t i = 0; i < kMaxRbfs; ++i) patch.atom[i] = static_cast<std::uint16_t>(3 * i);
   model.store(3, patch);
   EXPECT_EQ(shader->upload(two), 10u * 28u * 8u);
   EXPECT_EQ(shader->upload({}), 0u);
@@ -81,11 +81,11 @@ TEST(SparsePatchShader, GrowingEqualsStartingAfresh) {
   const auto renderer = make_gl_surface_renderer(*context, mesh, model);
   const cv::Mat grey = renderer->render(camera, pose).image;
   std::mt19937 random(kSeed);
-  for (const std::size_t most_bumps : {std::size_t{0}, std::size_t{3}, std::size_t{20}}) {
+  for (const std::size_t most_rbfs : {std::size_t{0}, std::size_t{3}, std::size_t{20}}) {
     // Change every third patch; the others keep what they have.
     fitting::ModelUpdate update;
     for (std::uint32_t i = 0; i < model.patch_count(); i += 3) {
-      model.store(i, random_patch(random, most_bumps));
+      model.store(i, random_patch(random, most_rbfs));
       model.store_observed(i, i % 2 == 0);
       update.patches.push_back(i);
     }
@@ -93,8 +93,8 @@ TEST(SparsePatchShader, GrowingEqualsStartingAfresh) {
     const cv::Mat grown = renderer->render(camera, pose).image;
     const cv::Mat fresh =
         make_gl_surface_renderer(*context, mesh, model)->render(camera, pose).image;
-    EXPECT_EQ(cv::norm(grown, fresh, cv::NORM_INF), 0) << most_bumps;
-    EXPECT_GT(cv::norm(grown, grey, cv::NORM_INF), 20) << most_bumps;
+    EXPECT_EQ(cv::norm(grown, fresh, cv::NORM_INF), 0) << most_rbfs;
+    EXPECT_GT(cv::norm(grown, grey, cv::NORM_INF), 20) << most_rbfs;
   }
 }
 
