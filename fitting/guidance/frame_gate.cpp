@@ -15,7 +15,7 @@ constexpr std::size_t kFewest = 50;        // familiar samples that are enough f
 constexpr double kUnusual = 3;             // times what is usual
 constexpr double kCalm = 0.67;             // median size of a normal error, in its deviations
 constexpr double kStep = 0.06;             // logarithm of a gain that is worth the name
-constexpr double kExplained = 0.5;         // of the surprise is left without the gain, at most
+constexpr double kExplained = 0.5;  // of the normalised residual is left without the gain, at most
 
 }  // namespace
 
@@ -31,22 +31,24 @@ std::string_view name_of(FrameVerdict verdict) {
   return "fine";
 }
 
-double FrameGate::usual_surprise() const {
+double FrameGate::usual_normalised_residual() const {
   std::vector<double> values = recent_;
   return std::max(core::upper_median(values), kCalm);
 }
 
 FrameVerdict FrameGate::judge(const FrameScore& score) {
   if (score.familiar < kFewest) return FrameVerdict::fine;
-  if (recent_.size() >= kFirstLessons && score.surprise > kUnusual * usual_surprise()) {
-    const bool step = std::abs(std::log(score.gain)) > kStep &&
-                      score.surprise_without_gain < kExplained * score.surprise;
+  if (recent_.size() >= kFirstLessons &&
+      score.normalised_residual > kUnusual * usual_normalised_residual()) {
+    const bool step =
+        std::abs(std::log(score.gain)) > kStep &&
+        score.normalised_residual_without_gain < kExplained * score.normalised_residual;
     return step ? FrameVerdict::exposure_step : FrameVerdict::mismatch;
   }
   if (recent_.size() < kRemembered) {
-    recent_.push_back(score.surprise);
+    recent_.push_back(score.normalised_residual);
   } else {
-    recent_[next_++ % kRemembered] = score.surprise;
+    recent_[next_++ % kRemembered] = score.normalised_residual;
   }
   return FrameVerdict::fine;
 }

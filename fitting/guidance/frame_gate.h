@@ -18,16 +18,16 @@ enum class FrameVerdict {
 std::string_view name_of(FrameVerdict verdict);
 
 /// Tells frames that contradict the model from those that are new to it, by comparing a frame's
-/// surprise with what recent frames showed.
+/// normalised residual with what recent frames showed.
 class FrameGate {
  public:
-  /// Judges a frame. Its surprise becomes part of what is usual when it is fine.
+  /// Judges a frame. Its normalised residual becomes part of what is usual when it is fine.
   FrameVerdict judge(const FrameScore& score);
 
  private:
-  [[nodiscard]] double usual_surprise() const;
+  [[nodiscard]] double usual_normalised_residual() const;
 
-  std::vector<double> recent_;  ///< surprises of fine frames, the last few in a ring
+  std::vector<double> recent_;  ///< normalised residuals of fine frames, the last few in a ring
   std::size_t next_ = 0;
 };
 

@@ -40,7 +40,7 @@ ViewNeed::Prediction ViewNeed::predict(const core::SampleBatch& batch, std::size
   return prediction;
 }
 
-double ViewNeed::median_surprise(const core::SampleBatch& batch, float gain) {
+double ViewNeed::median_normalised_residual(const core::SampleBatch& batch, float gain) {
   scratch_.clear();
   for (std::size_t i = 0; i < predictions_.size(); ++i) {
     const Prediction& p = predictions_[i];
@@ -78,9 +78,10 @@ FrameScore ViewNeed::score(const core::SampleBatch& batch, const LightField& mod
   if (score.predicted > 0) {
     score.squared_error = squared_error / static_cast<double>(score.predicted);
   }
-  score.surprise = median_surprise(batch, 1);
+  score.normalised_residual = median_normalised_residual(batch, 1);
   score.gain = median_gain();
-  score.surprise_without_gain = median_surprise(batch, static_cast<float>(score.gain));
+  score.normalised_residual_without_gain =
+      median_normalised_residual(batch, static_cast<float>(score.gain));
   return score;
 }
 

@@ -21,11 +21,11 @@ struct FrameScore {
   std::size_t familiar = 0;   ///< of those, towards directions seen before
   double squared_error = 0;   ///< mean over the predicted ones and channels, sRGB
   /// Median size of the familiar ones' errors in units of what is usual for their patches.
-  double surprise = 0;
+  double normalised_residual = 0;
   /// Brightness of the frame against the model, over familiar samples.
   double gain = 1;
-  /// Median surprise once the gain is taken out.
-  double surprise_without_gain = 0;
+  /// Median normalised residual once the gain is taken out.
+  double normalised_residual_without_gain = 0;
 };
 
 /// What is known about one patch, 24 bytes.
@@ -80,7 +80,7 @@ class ViewNeed {
 
   [[nodiscard]] Prediction predict(const core::SampleBatch& batch, std::size_t i,
                                    const LightField& model) const;
-  [[nodiscard]] double median_surprise(const core::SampleBatch& batch, float gain);
+  [[nodiscard]] double median_normalised_residual(const core::SampleBatch& batch, float gain);
   [[nodiscard]] double median_gain();
   static void learn(float& mean, std::uint16_t& count, float value, Totals& totals);
 

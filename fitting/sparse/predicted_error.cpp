@@ -54,19 +54,19 @@ float predicted_error(const SampleStore& samples, const SamplePool& pool, float 
 
   // Gather what the nearest samples say.
   constexpr float softening = 0.01f;
-  float squared_surprise = 0;
+  float squared_residual = 0;
   Eigen::Vector3f blend = Eigen::Vector3f::Zero();
   float total = 0;
   for (std::size_t k = 0; k < near.count; ++k) {
-    const float surprise = samples.surprise(near.idx[k], pool);
-    squared_surprise += surprise * surprise;
+    const float normalised_residual = samples.normalised_residual(near.idx[k], pool);
+    squared_residual += normalised_residual * normalised_residual;
     if (k >= kBlendSamples) continue;
     const float weight = 1.0f / (std::sqrt(near.squared[k]) + softening);
     blend += weight * samples.at(near.idx[k], pool).rgb;
     total += weight;
   }
   const Eigen::Vector3f displayed = shown.cwiseMax(0.0f).cwiseMin(1.0f);
-  return std::sqrt(squared_surprise / static_cast<float>(near.count)) +
+  return std::sqrt(squared_residual / static_cast<float>(near.count)) +
          std::sqrt(near.squared[0]) * spread + 0.5f * size_of(displayed - blend / total);
 }
 

@@ -18,7 +18,8 @@ struct alignas(64) SampleBlock {
   std::array<std::int16_t, kSamples> u, v;      ///< in 1 / 32767
   std::array<std::uint16_t, kSamples> r, g, b;  ///< in 1 / 32767, from -0.5
   std::array<std::uint8_t, kSamples> count;     ///< samples averaged here, saturating
-  std::array<std::uint8_t, kSamples> surprise;  ///< how far off a prediction was, surprise_code
+  std::array<std::uint8_t, kSamples>
+      normalised_residual;  ///< how far off a prediction was, normalised_residual_code
 };
 static_assert(sizeof(SampleBlock) == 192);
 

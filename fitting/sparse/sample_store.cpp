@@ -49,8 +49,8 @@ float colour(std::uint16_t code) {
   return static_cast<float>(code) / kScale + kDarkest;
 }
 
-// Surprises on a logarithmic scale from 1e-4 to about 3.
-constexpr float kLeastSurprise = 1e-4f;
+// Normalised residuals on a logarithmic scale from 1e-4 to about 3.
+constexpr float kLeastResidual = 1e-4f;
 constexpr float kStepsPerOctave = 17.0f;
 
 }  // namespace
@@ -92,25 +92,26 @@ void SampleStore::move(std::size_t from, std::size_t to, SamplePool& pool) const
   target.g[k] = source.g[i];
   target.b[k] = source.b[i];
   target.count[k] = source.count[i];
-  target.surprise[k] = source.surprise[i];
+  target.normalised_residual[k] = source.normalised_residual[i];
 }
 
-void SampleStore::set_surprise(std::size_t idx, float surprise, SamplePool& pool) const {
-  const float octaves = std::log2(std::max(surprise, kLeastSurprise) / kLeastSurprise);
-  block_of(idx, pool).surprise[idx % SampleBlock::kSamples] =
+void SampleStore::set_normalised_residual(std::size_t idx, float normalised_residual,
+                                          SamplePool& pool) const {
+  const float octaves = std::log2(std::max(normalised_residual, kLeastResidual) / kLeastResidual);
+  block_of(idx, pool).normalised_residual[idx % SampleBlock::kSamples] =
       static_cast<std::uint8_t>(std::min(255.0f, kStepsPerOctave * octaves));
 }
 
-float SampleStore::surprise(std::size_t idx, const SamplePool& pool) const {
+float SampleStore::normalised_residual(std::size_t idx, const SamplePool& pool) const {
   static const auto table = [] {
     std::array<float, 256> values{};
     for (std::size_t code = 0; code < values.size(); ++code) {
       values[code] =
-          kLeastSurprise * std::exp2((static_cast<float>(code) + 0.5f) / kStepsPerOctave);
+          kLeastResidual * std::exp2((static_cast<float>(code) + 0.5f) / kStepsPerOctave);
     }
     return values;
   }();
-  return table[block_of(idx, pool).surprise[idx % SampleBlock::kSamples]];
+  return table[block_of(idx, pool).normalised_residual[idx % SampleBlock::kSamples]];
 }
 
 std::size_t SampleStore::distances(const Eigen::Vector2f& uv, const SamplePool& pool,

@@ -54,8 +54,8 @@ class SampleStore {
                                        std::span<DirectedColour> samples) const;
 
   /// How far off the prediction was that was made without the sample; kept to about 4 %.
-  void set_surprise(std::size_t idx, float surprise, SamplePool& pool) const;
-  [[nodiscard]] float surprise(std::size_t idx, const SamplePool& pool) const;
+  void set_normalised_residual(std::size_t idx, float normalised_residual, SamplePool& pool) const;
+  [[nodiscard]] float normalised_residual(std::size_t idx, const SamplePool& pool) const;
 
   /// Squared distances of all samples from a direction, in disc units; returns the nearest.
   std::size_t distances(const Eigen::Vector2f& uv, const SamplePool& pool,

@@ -120,7 +120,7 @@ bool SparseRepresentation::take(std::size_t patch_idx, const SelectedModel& sele
   state.debt = 0;
   state.spread = colour_spread(samples);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    state.samples.set_surprise(i, selected.left_out_residuals[i], pool_);
+    state.samples.set_normalised_residual(i, selected.left_out_residuals[i], pool_);
   }
   return model_.store(patch_idx, selected.model);
 }
@@ -141,12 +141,12 @@ bool SparseRepresentation::absorb_sample(std::size_t patch_idx, const DirectedCo
   }
 
   // Compare with the prediction; a patch of one colour follows the mean.
-  constexpr float surprise = 1.5f;
+  constexpr float normalised_residual = 1.5f;
   const bool first = state.samples.size() == 1;
   const Eigen::Vector3f predicted = first ? sample.rgb : model_.colour(patch_idx, sample.uv);
   const float error = size_of(predicted - sample.rgb);
-  state.samples.set_surprise(arrival.idx, error, pool_);
-  const float limit = surprise * std::max(state.expected_error, tolerance_);
+  state.samples.set_normalised_residual(arrival.idx, error, pool_);
+  const float limit = normalised_residual * std::max(state.expected_error, tolerance_);
   state.debt += std::max(0.0f, error * error - limit * limit);
   if (state.samples.size() >= state.look_at) {
     state.debt += tolerance_ * tolerance_;

@@ -127,7 +127,7 @@ TEST(ViewNeed, IgnoresWhatIsNotANumber) {
   for (const auto& batch : {view(1, {0, 0}, {0.5, 0.5, 0.5}), view(1, {nan, 0}, {0.5, 0.5, 0.5}),
                             view(1, {0, 0}, {nan, 0.5, 0.5}), view(1, {0, 0}, {0.5, 0.5, 0.5})}) {
     const FrameScore score = need.score(batch, model->light_field());
-    EXPECT_TRUE(std::isfinite(score.squared_error) && std::isfinite(score.surprise));
+    EXPECT_TRUE(std::isfinite(score.squared_error) && std::isfinite(score.normalised_residual));
     need.note(batch);
     model->absorb(batch);
   }

@@ -60,8 +60,8 @@ TEST(SparseLive, HighlightIsFollowedBeforeTheEnd) {
 }
 
 TEST(SparseLive, WorkOfAViewIsBounded) {
-  // 4800 patches, all of them surprised by every view. A patch of four samples or more costs at
-  // least 20 of the view's 4800 units of work, so 240 may take a step, which solves at most five
+  // 4800 patches, all of them badly predicted for every view. A patch of four samples or more costs
+  // at least 20 of the view's 4800 units of work, so 240 may take a step, which solves at most five
   // systems: the patch as it is, with a linear base, with a RBF more, with one less, and the
   // outcome.
   constexpr std::uint32_t patches = 4800;

@@ -80,13 +80,13 @@ TEST(SampleStore, MergingAveragesColours) {
   EXPECT_NEAR(kept[1].rgb.x(), 0.5f, 1e-3f);
 }
 
-TEST(SampleStore, SurpriseComesBackWithinItsSteps) {
+TEST(SampleStore, NormalisedResidualComesBackWithinItsSteps) {
   Kept kept;
   kept.add({0, 0}, Eigen::Vector3f::Zero(), 8);
-  for (const float surprise : {0.0002f, 0.004f, 0.05f, 0.9f}) {
-    kept.store.set_surprise(0, surprise, kept.pool);
+  for (const float normalised_residual : {0.0002f, 0.004f, 0.05f, 0.9f}) {
+    kept.store.set_normalised_residual(0, normalised_residual, kept.pool);
     // 17 steps a factor of two: half a step is 2 %.
-    EXPECT_NEAR(kept.store.surprise(0, kept.pool) / surprise, 1.0f, 0.025f);
+    EXPECT_NEAR(kept.store.normalised_residual(0, kept.pool) / normalised_residual, 1.0f, 0.025f);
   }
 }
 
