@@ -13,8 +13,8 @@ void Options::check() const {
     throw std::invalid_argument("tolerance is " + std::to_string(*tolerance) +
                                 ", it must lie between 0 and 1");
   }
-  if (!(economy >= 0.0f && economy <= 10.0f)) {
-    throw std::invalid_argument("economy is " + std::to_string(economy) +
+  if (!(criterion_weight >= 0.0f && criterion_weight <= 10.0f)) {
+    throw std::invalid_argument("criterion_weight is " + std::to_string(criterion_weight) +
                                 ", it must lie between 0 and 10");
   }
   if (max_samples < 8 || max_samples > static_cast<int>(kMaxStoredSamples)) {

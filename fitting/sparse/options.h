@@ -15,7 +15,7 @@ struct Options {
   std::optional<float> tolerance{};
   /// Price of a stored number, in halves of log n (1 is Schwarz's criterion), in [0, 10]: more is
   /// leaner.
-  float economy = 0.3f;
+  float criterion_weight = 0.3f;
   /// Samples kept per patch, in [8, 128]; beyond that the closest directions become one.
   int max_samples = 128;
 

@@ -11,8 +11,8 @@
 namespace sheen::fitting::sparse {
 namespace {
 
-/// Weight of samples at which the economy reaches half its nominal value.
-constexpr float kEconomyOnset = 48.0f;
+/// Weight of samples at which the criterion_weight reaches half its nominal value.
+constexpr float kCriterionOnset = 48.0f;
 /// Numbers that naming an atom counts as. One of 304 is log 304 = 5.7 nats, a number 1/2 log n
 /// = 2.2: at the price of one number, noise finds an atom that suits it too often.
 constexpr std::size_t kPriceOfAtom = 3;
@@ -96,10 +96,10 @@ float Selection::score(const StepwiseFit& fit) const {
   if (terms.count > 1 && fit.degrees_of_freedom() > kMostFreedom * n) {
     return std::numeric_limits<float>::infinity();
   }
-  const float economy = economy_ * n / (n + kEconomyOnset);
+  const float criterion_weight = criterion_weight_ * n / (n + kCriterionOnset);
   const auto numbers = static_cast<float>(3 * terms.count + kPriceOfAtom * terms.rbf_count());
   return 1.5f * n * std::log(generalised_error(fit) + tolerance_ * tolerance_) +
-         0.5f * economy * numbers * std::log(std::max(2.0f, n));
+         0.5f * criterion_weight * numbers * std::log(std::max(2.0f, n));
 }
 
 // Best prefix of the greedy path.

@@ -27,17 +27,17 @@ struct SelectedModel {
 
 /// Chooses the terms of a patch: those that lower
 ///
-///     score = 3/2 n log(GCV + tolerance^2) + economy(n) / 2 * numbers * log n,
+///     score = 3/2 n log(GCV + tolerance^2) + criterion_weight(n) / 2 * numbers * log n,
 ///
 /// with GCV = mean r^2 / (1 - df / n)^2, n the weight of the samples, and three numbers for a term
-/// and three more for the choice of its atom. The economy grows with n to its nominal value: with a
-/// dozen samples a term that is wrong costs little and one that is missing much. Holds the
-/// workspace (about 190 KB): one per thread.
+/// and three more for the choice of its atom. The criterion_weight grows with n to its nominal
+/// value: with a dozen samples a term that is wrong costs little and one that is missing much.
+/// Holds the workspace (about 190 KB): one per thread.
 class Selection {
  public:
   /// The options' tolerance may be changed later.
   explicit Selection(const Options& options)
-      : economy_(options.economy),
+      : criterion_weight_(options.criterion_weight),
         tolerance_(options.tolerance.value_or(kToleranceOfUnknownNoise)) {}
 
   void set_tolerance(float tolerance) { tolerance_ = tolerance; }
@@ -88,7 +88,7 @@ class Selection {
   [[nodiscard]] SelectedModel outcome(std::span<const DirectedColour> samples,
                                       const TermList& terms);
 
-  float economy_;
+  float criterion_weight_;
   float tolerance_;
   Design design_;
   StepwiseFit fit_;

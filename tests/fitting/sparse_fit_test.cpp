@@ -300,7 +300,7 @@ TEST(SparseFit, BadOptionsAreRefused) {
   EXPECT_THROW(make_sparse(1, 1, {.tolerance = 0.0f}), std::invalid_argument);
   EXPECT_THROW(make_sparse(1, 1, {.tolerance = std::numeric_limits<float>::quiet_NaN()}),
                std::invalid_argument);
-  EXPECT_THROW(make_sparse(1, 1, {.economy = -1.0f}), std::invalid_argument);
+  EXPECT_THROW(make_sparse(1, 1, {.criterion_weight = -1.0f}), std::invalid_argument);
   EXPECT_THROW(make_sparse(1, 1, {.max_samples = 4}), std::invalid_argument);
   EXPECT_THROW(make_sparse(1, 1, {.max_samples = 129}), std::invalid_argument);
 }
