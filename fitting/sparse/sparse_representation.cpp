@@ -35,7 +35,7 @@ constexpr float kSupposedSpread = 0.1f;
 struct alignas(64) PatchState {
   SampleStore samples;
   float expected_error = 0;  ///< of a new sample; 0 before the first fit
-  float debt = 0;            ///< sum of what predictions were off, squared, since the last fit
+  float refit_priority = 0;  ///< sum of what predictions were off, squared, since the last fit
   float spread = kSupposedSpread;  ///< of the colours at the last fit
   std::uint8_t look_at = 0;  ///< number of kept samples at which the patch is looked at anyway
   bool unsettled = false;    ///< touched since the last `finish`
@@ -44,12 +44,13 @@ static_assert(sizeof(PatchState) == 64);
 
 /// A patch that asks to be improved: position in the batch and how urgent it is.
 struct Request {
-  float debt;
+  float refit_priority;
   std::uint32_t position;
 
   /// By urgency, then in order.
   [[nodiscard]] bool operator<(const Request& other) const {
-    return debt > other.debt || (debt == other.debt && position < other.position);
+    return refit_priority > other.refit_priority ||
+           (refit_priority == other.refit_priority && position < other.position);
   }
 };
 
@@ -117,7 +118,7 @@ bool SparseRepresentation::take(std::size_t patch_idx, const SelectedModel& sele
                                 std::span<const DirectedColour> samples) {
   PatchState& state = states_[patch_idx];
   state.expected_error = selected.expected_error;
-  state.debt = 0;
+  state.refit_priority = 0;
   state.spread = colour_spread(samples);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     state.samples.set_normalised_residual(i, selected.left_out_residuals[i], pool_);
@@ -147,9 +148,9 @@ bool SparseRepresentation::absorb_sample(std::size_t patch_idx, const DirectedCo
   const float error = size_of(predicted - sample.rgb);
   state.samples.set_normalised_residual(arrival.idx, error, pool_);
   const float limit = normalised_residual * std::max(state.expected_error, tolerance_);
-  state.debt += std::max(0.0f, error * error - limit * limit);
+  state.refit_priority += std::max(0.0f, error * error - limit * limit);
   if (state.samples.size() >= state.look_at) {
-    state.debt += tolerance_ * tolerance_;
+    state.refit_priority += tolerance_ * tolerance_;
     const std::size_t third = std::max<std::size_t>(1, state.samples.size() / 3);
     state.look_at = static_cast<std::uint8_t>(state.samples.size() + third);
   }
@@ -181,14 +182,14 @@ void SparseRepresentation::keep_samples(const core::SampleBatch& batch) {
 }
 
 // The most urgent of the view's patches, as many as the budget allows: a count of work and not a
-// time, so that results do not depend on the machine. The others keep their debt and ask again when
-// they are seen again, or wait for `finish`.
+// time, so that results do not depend on the machine. The others keep their refit priority and ask
+// again when they are seen again, or wait for `finish`.
 void SparseRepresentation::collect_requests(const core::SampleBatch& batch) {
   requests_.clear();
   for (std::size_t i = 0; i < batch.size(); ++i) {
     const PatchState& state = states_[batch.patch[i]];
-    if (!(state.debt > 0.0f) || state.samples.size() < kFewestToImprove) continue;
-    requests_.push_back({state.debt, static_cast<std::uint32_t>(i)});
+    if (!(state.refit_priority > 0.0f) || state.samples.size() < kFewestToImprove) continue;
+    requests_.push_back({state.refit_priority, static_cast<std::uint32_t>(i)});
   }
   // Sort no more of them than can be paid for.
   std::size_t units = batch.size() * kUnitsPerSample;
