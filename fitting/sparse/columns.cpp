@@ -72,7 +72,7 @@ void wendland(const Column& u, const Column& v, const Column& weight, std::size_
 }
 
 SHEEN_FOR_EVERY_PROCESSOR
-void crowding(const Column& u, const Column& v, std::size_t rows, float reach, Column& out) {
+void kernel_density(const Column& u, const Column& v, std::size_t rows, float reach, Column& out) {
   Column near;
   const auto all = static_cast<float>(rows);
   for (std::size_t i = 0; i < rows; ++i) {

@@ -31,7 +31,7 @@ void wendland(const Column& u, const Column& v, const Column& weight, std::size_
 
 /// out[i] = sum_j theta(|x_i - x_j| / reach). Rows behind the last sample must lie further than
 /// `reach` from all samples.
-void crowding(const Column& u, const Column& v, std::size_t rows, float reach, Column& out);
+void kernel_density(const Column& u, const Column& v, std::size_t rows, float reach, Column& out);
 
 float dot(const Column& a, const Column& b, std::size_t rows);
 

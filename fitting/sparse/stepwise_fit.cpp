@@ -57,7 +57,7 @@ TermList TermList::of(const PatchModel& model) {
 }
 
 void Design::weigh() {
-  columns::crowding(u_, v_, padded_rows(), kReach, root_weight_);
+  columns::kernel_density(u_, v_, padded_rows(), kReach, root_weight_);
   for (std::size_t row = 0; row < rows_; ++row) {
     root_weight_.row[row] = 1.0f / std::sqrt(root_weight_.row[row]);
   }

@@ -58,17 +58,17 @@ TEST(SparseColumns, WendlandIsTheFunctionOfTheDistance) {
   for (std::size_t row = kSamples; row < kRows; ++row) EXPECT_EQ(rbf.row[row], 0.0f);
 }
 
-TEST(SparseColumns, CrowdingCountsNeighboursAndItself) {
+TEST(SparseColumns, KernelDensityCountsNeighboursAndItself) {
   for (const float reach : {0.001f, 0.1f, 0.6f}) {
     const Directions at(2);
-    Column crowding;
-    columns::crowding(at.u, at.v, kRows, reach, crowding);
+    Column kernel_density;
+    columns::kernel_density(at.u, at.v, kRows, reach, kernel_density);
     for (std::size_t i = 0; i < kSamples; ++i) {
       float expected = 0;
       for (std::size_t j = 0; j < kSamples; ++j) {
         expected += iwls::wendland(at.distance(i, j) / reach);
       }
-      EXPECT_NEAR(crowding.row[i], expected, 3 * kRounding) << reach;
+      EXPECT_NEAR(kernel_density.row[i], expected, 3 * kRounding) << reach;
     }
   }
 }
