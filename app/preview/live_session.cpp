@@ -23,11 +23,12 @@ Eigen::Vector3f up_in_object(const Eigen::Isometry3d& board_from_object) {
 
 LiveSession::LiveSession(Parts parts)
     : parts_(std::move(parts)), score_(parts_.mesh.positions.size()) {
-  guide_.emplace(Guide::Parts{.mesh = parts_.mesh,
-                              .up = up_in_object(parts_.board_from_object),
-                              .limits = parts_.limits,
-                              .ask = [this] { return what_is_known(); },
-                              .tell = [this](GuideAdvice advice) { take(std::move(advice)); }});
+  planner_.emplace(NextBestViewPlanner::Parts{
+      .mesh = parts_.mesh,
+      .up = up_in_object(parts_.board_from_object),
+      .limits = parts_.limits,
+      .ask = [this] { return what_is_known(); },
+      .tell = [this](PlannerAdvice advice) { take(std::move(advice)); }});
 }
 
 bool LiveSession::admit(const core::SampleBatch& batch) {
@@ -197,7 +198,7 @@ LiveSession::PathNews LiveSession::path_since(std::size_t known, std::size_t gen
   return news;
 }
 
-std::optional<GuideAdvice> LiveSession::take_advice() {
+std::optional<PlannerAdvice> LiveSession::take_advice() {
   const std::lock_guard lock(mutex_);
   return std::exchange(advice_, std::nullopt);
 }
@@ -207,18 +208,18 @@ guidance::PatchKnowledge LiveSession::knowledge_of(std::size_t patch_idx) const 
   return score_.need.patches()[patch_idx];
 }
 
-std::optional<GuideInput> LiveSession::what_is_known() const {
+std::optional<PlannerInput> LiveSession::what_is_known() const {
   const std::lock_guard lock(mutex_);
   if (views_.empty()) return std::nullopt;
-  return GuideInput{score_.need, core::eye_in_object(views_.back().camera_from_object)};
+  return PlannerInput{score_.need, core::eye_in_object(views_.back().camera_from_object)};
 }
 
-void LiveSession::take(GuideAdvice advice) {
+void LiveSession::take(PlannerAdvice advice) {
   {
     const std::lock_guard lock(mutex_);
     status_.coverage = advice.coverage;
     status_.hint.reset();
-    if (advice.next_place) status_.hint = advice.next_place->cast<double>();
+    if (advice.next_best_view) status_.hint = advice.next_best_view->cast<double>();
     advice_ = std::move(advice);
   }
   wake();

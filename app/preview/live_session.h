@@ -4,8 +4,8 @@
 #include "app/pipeline/frame_statistics.h"
 #include "app/pipeline/pose_stage.h"
 #include "app/pipeline/shared_model.h"
-#include "app/preview/guide.h"
 #include "app/preview/live_status.h"
+#include "app/preview/next_best_view_planner.h"
 #include "core/geometry/camera.h"
 #include "fitting/guidance/capture_score.h"
 #include "fitting/rewind/rewindable_representation.h"
@@ -64,8 +64,8 @@ class LiveSession {
     std::size_t generation = 0;  ///< grows with every undo: forget what you know
   };
   [[nodiscard]] PathNews path_since(std::size_t known, std::size_t generation) const;
-  /// Advice of the guide that has not been fetched yet.
-  std::optional<GuideAdvice> take_advice();
+  /// Advice of the planner that has not been fetched yet.
+  std::optional<PlannerAdvice> take_advice();
   [[nodiscard]] fitting::guidance::PatchKnowledge knowledge_of(std::size_t patch_idx) const;
 
   /// Shows the model and what changed since the last look, unless it is being fitted just now.
@@ -107,8 +107,8 @@ class LiveSession {
   void obey();
   void undo(double seconds);
   void save();
-  std::optional<GuideInput> what_is_known() const;
-  void take(GuideAdvice advice);
+  std::optional<PlannerInput> what_is_known() const;
+  void take(PlannerAdvice advice);
   void wake() const;
 
   Parts parts_;
@@ -123,9 +123,9 @@ class LiveSession {
   std::string verdict_;    ///< why the frame under way is doubted, in words
   std::map<std::string, int> doubts_;
   std::map<std::string, std::deque<double>, std::less<>> recent_ms_;
-  std::optional<GuideAdvice> advice_;
+  std::optional<PlannerAdvice> advice_;
   std::function<void()> wake_;
-  std::optional<Guide> guide_;  // last: its thread uses the others
+  std::optional<NextBestViewPlanner> planner_;  // last: its thread uses the others
 };
 
 }  // namespace sheen::app

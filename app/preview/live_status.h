@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "fitting/guidance/view_need.h"
+#include "fitting/guidance/view_utility.h"
 
 #include <Eigen/Geometry>
 #include <opencv2/core/mat.hpp>

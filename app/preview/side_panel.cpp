@@ -123,7 +123,7 @@ void phase_line(const LiveStatus& live, const theme::Fonts& fonts) {
 void coverage_bar(const LiveStatus& live, const theme::Fonts& fonts) {
   heading("Coverage");
   ImGui::PushFont(fonts.large);
-  // Nothing is known before the guide has looked from everywhere once.
+  // Nothing is known before the planner has looked from everywhere once.
   text(theme::kText, live.coverage > 0 ? fmt::format("{:.0f} %", 100 * live.coverage) : "\u2013");
   ImGui::PopFont();
   const ImVec2 from = ImGui::GetCursorScreenPos();

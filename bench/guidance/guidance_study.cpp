@@ -149,7 +149,7 @@ Curve guided_walk(const WalkScene& scene, const std::vector<Eigen::Vector3f>& ju
     const auto& need = walk.score.need;
     const auto gains =
         views.gains(need.patches(), guidance::smooth_novel_errors(need, neighbours), area);
-    const auto next = guidance::next_place(views.places(), gains, {0, 0, 0}, eye);
+    const auto next = guidance::next_best_view(views.places(), gains, {0, 0, 0}, eye);
     if (!next) return std::nullopt;
     return views.places()[*next];
   });

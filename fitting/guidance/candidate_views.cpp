@@ -82,9 +82,10 @@ std::vector<double> CandidateViews::gains(const std::vector<PatchKnowledge>& pat
   return gains;
 }
 
-std::optional<std::size_t> next_place(const std::vector<Eigen::Vector3f>& places,
-                                      const std::vector<double>& gains,
-                                      const Eigen::Vector3f& centre, const Eigen::Vector3f& eye) {
+std::optional<std::size_t> next_best_view(const std::vector<Eigen::Vector3f>& places,
+                                          const std::vector<double>& gains,
+                                          const Eigen::Vector3f& centre,
+                                          const Eigen::Vector3f& eye) {
   std::optional<std::size_t> best;
   double best_rate = 0;
   const Eigen::Vector3f here = (eye - centre).normalized();

@@ -4,7 +4,7 @@
 #include "core/mesh/mesh.h"
 #include "core/samples/vertex_view.h"
 #include "core/visibility/ray_caster.h"
-#include "fitting/guidance/view_need.h"
+#include "fitting/guidance/view_utility.h"
 
 #include <Eigen/Core>
 
@@ -50,8 +50,9 @@ class CandidateViews {
 
 /// The place to go to from `eye`: most gain per way, a way being the angle about `centre` plus a
 /// fifth of a radian. Nothing when nowhere is anything to gain.
-std::optional<std::size_t> next_place(const std::vector<Eigen::Vector3f>& places,
-                                      const std::vector<double>& gains,
-                                      const Eigen::Vector3f& centre, const Eigen::Vector3f& eye);
+std::optional<std::size_t> next_best_view(const std::vector<Eigen::Vector3f>& places,
+                                          const std::vector<double>& gains,
+                                          const Eigen::Vector3f& centre,
+                                          const Eigen::Vector3f& eye);
 
 }  // namespace sheen::fitting::guidance

@@ -3,13 +3,13 @@
 
 #include "fitting/guidance/frame_gate.h"
 #include "fitting/guidance/quality_curve.h"
-#include "fitting/guidance/view_need.h"
+#include "fitting/guidance/view_utility.h"
 
 namespace sheen::fitting::guidance {
 
 /// What is kept while views arrive: where they are missing, whether they fit, how good it gets.
 struct CaptureScore {
-  ViewNeed need;
+  ViewUtility need;
   FrameGate gate;
   QualityCurve curve;
 

@@ -78,12 +78,12 @@ TEST(VertexAreas, AddUpToTheArea) {
   EXPECT_NEAR(std::accumulate(area.begin(), area.end(), 0.0), 1.0, 1e-5);
 }
 
-TEST(ViewNeed, PerfectPredictionsNeedNoViewsThere) {
+TEST(ViewUtility, PerfectPredictionsNeedNoViewsThere) {
   // A patch seen from one cell and predicted exactly there has familiar error 0, so the floor of
   // the camera's noise (.01 squared) is what remains.
   constexpr std::size_t patches = 3;
   const auto model = make("mean", patches);
-  ViewNeed need(patches);
+  ViewUtility need(patches);
   for (int i = 0; i < 100; ++i) {
     const auto batch = view(patches, {0.1, 0.1}, {0.5, 0.4, 0.3});
     need.score(batch, model->light_field());
@@ -97,11 +97,11 @@ TEST(ViewNeed, PerfectPredictionsNeedNoViewsThere) {
   EXPECT_GT(missing_variance(need.patches()[0].seen, kAll, need.novel_error(0)), 0);
 }
 
-TEST(ViewNeed, TellsMissingViewsFromAModelThatIsTooSimple) {
+TEST(ViewUtility, TellsMissingViewsFromAModelThatIsTooSimple) {
   // Patch 0 keeps its colour but is seen from one side only; patch 1 flickers between .2 and .8 and
   // is seen from all sides in turn. The first needs views; the second does not fit.
   const auto model = make("mean", 2);
-  ViewNeed need(2);
+  ViewUtility need(2);
   DirectionCells swept = 0;
   for (int i = 0; i < 400; ++i) {
     core::SampleBatch batch;
@@ -120,9 +120,9 @@ TEST(ViewNeed, TellsMissingViewsFromAModelThatIsTooSimple) {
   EXPECT_LT(need.familiar_error(0), 0.02f);
 }
 
-TEST(ViewNeed, IgnoresWhatIsNotANumber) {
+TEST(ViewUtility, IgnoresWhatIsNotANumber) {
   const auto model = make("mean", 1);
-  ViewNeed need(1);
+  ViewUtility need(1);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const auto& batch : {view(1, {0, 0}, {0.5, 0.5, 0.5}), view(1, {nan, 0}, {0.5, 0.5, 0.5}),
                             view(1, {0, 0}, {nan, 0.5, 0.5}), view(1, {0, 0}, {0.5, 0.5, 0.5})}) {
@@ -253,7 +253,7 @@ TEST_F(CandidatesRoundASphere, PlacesKeepTheirDistanceAboveTheBoard) {
 
 TEST_F(CandidatesRoundASphere, ThePlaceJustVisitedHasNothingMoreToOffer) {
   const auto model = make("mean", mesh_.positions.size());
-  ViewNeed need(mesh_.positions.size());
+  ViewUtility need(mesh_.positions.size());
   const auto batch = seen_from(views_.places()[10]);
   need.score(batch, model->light_field());
   need.note(batch);
@@ -264,7 +264,7 @@ TEST_F(CandidatesRoundASphere, ThePlaceJustVisitedHasNothingMoreToOffer) {
 
 TEST_F(CandidatesRoundASphere, VisitingEveryPlaceCoversTheObject) {
   const auto model = make("mean", mesh_.positions.size());
-  ViewNeed need(mesh_.positions.size());
+  ViewUtility need(mesh_.positions.size());
   double last = 0;
   for (const Eigen::Vector3f& place : views_.places()) {
     const auto batch = seen_from(place);
@@ -277,7 +277,7 @@ TEST_F(CandidatesRoundASphere, VisitingEveryPlaceCoversTheObject) {
   }
   EXPECT_DOUBLE_EQ(last, 1);
   const auto gains = views_.gains(need.patches(), smooth_novel_errors(need, neighbours_), area_);
-  EXPECT_FALSE(next_place(views_.places(), gains, {0, 0, 0}, {5, 0, 0}));
+  EXPECT_FALSE(next_best_view(views_.places(), gains, {0, 0, 0}, {5, 0, 0}));
 }
 
 TEST(NextPlace, WeighsGainAgainstTheWay) {
@@ -285,9 +285,9 @@ TEST(NextPlace, WeighsGainAgainstTheWay) {
   // way plus .2: here (1.571 + .2) / (.464 + .2) = 2.67 times.
   const std::vector<Eigen::Vector3f> places{{0, 1, 0}, {1, 0.5f, 0}};
   const Eigen::Vector3f eye(1, 0, 0);
-  EXPECT_EQ(next_place(places, {1, 1}, {0, 0, 0}, eye), 1u);
-  EXPECT_EQ(next_place(places, {2.6, 1}, {0, 0, 0}, eye), 1u);
-  EXPECT_EQ(next_place(places, {2.8, 1}, {0, 0, 0}, eye), 0u);
+  EXPECT_EQ(next_best_view(places, {1, 1}, {0, 0, 0}, eye), 1u);
+  EXPECT_EQ(next_best_view(places, {2.6, 1}, {0, 0, 0}, eye), 1u);
+  EXPECT_EQ(next_best_view(places, {2.8, 1}, {0, 0, 0}, eye), 0u);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fitting/guidance/view_need.h"
+#include "fitting/guidance/view_utility.h"
 
 #include "core/numerics/median.h"
 #include "fitting/samples/sample.h"
@@ -26,8 +26,8 @@ float drawn(float mean, std::uint16_t count, float typical) {
 
 }  // namespace
 
-ViewNeed::Prediction ViewNeed::predict(const core::SampleBatch& batch, std::size_t i,
-                                       const LightField& model) const {
+ViewUtility::Prediction ViewUtility::predict(const core::SampleBatch& batch, std::size_t i,
+                                             const LightField& model) const {
   Prediction prediction;
   const PatchKnowledge& patch = patches_[batch.patch[i]];
   if (patch.samples == 0 || !usable_sample(batch, i)) return prediction;
@@ -40,7 +40,7 @@ ViewNeed::Prediction ViewNeed::predict(const core::SampleBatch& batch, std::size
   return prediction;
 }
 
-double ViewNeed::median_normalised_residual(const core::SampleBatch& batch, float gain) {
+double ViewUtility::median_normalised_residual(const core::SampleBatch& batch, float gain) {
   scratch_.clear();
   for (std::size_t i = 0; i < predictions_.size(); ++i) {
     const Prediction& p = predictions_[i];
@@ -52,7 +52,7 @@ double ViewNeed::median_normalised_residual(const core::SampleBatch& batch, floa
 }
 
 // Of measured over predicted brightness; dark samples say nothing about it.
-double ViewNeed::median_gain() {
+double ViewUtility::median_gain() {
   constexpr float dark = 0.1f;
   constexpr std::size_t few = 20;
   scratch_.clear();
@@ -63,7 +63,7 @@ double ViewNeed::median_gain() {
   return scratch_.size() < few ? 1 : std::max(core::upper_median(scratch_), 0.05);
 }
 
-FrameScore ViewNeed::score(const core::SampleBatch& batch, const LightField& model) {
+FrameScore ViewUtility::score(const core::SampleBatch& batch, const LightField& model) {
   FrameScore score;
   score.samples = batch.size();
   predictions_.resize(batch.size());
@@ -86,14 +86,14 @@ FrameScore ViewNeed::score(const core::SampleBatch& batch, const LightField& mod
 }
 
 // Moves a patch's mean towards a value, a plain mean at first, fading later; the total is plain.
-void ViewNeed::learn(float& mean, std::uint16_t& count, float value, Totals& totals) {
+void ViewUtility::learn(float& mean, std::uint16_t& count, float value, Totals& totals) {
   count = static_cast<std::uint16_t>(std::min<int>(count + 1, kMemory));
   mean += (value - mean) / static_cast<float>(count);
   totals.sum += static_cast<double>(value);
   ++totals.count;
 }
 
-void ViewNeed::note(const core::SampleBatch& batch) {
+void ViewUtility::note(const core::SampleBatch& batch) {
   assert(predictions_.size() == batch.size());
   for (std::size_t i = 0; i < batch.size(); ++i) {
     PatchKnowledge& patch = patches_[batch.patch[i]];
@@ -110,28 +110,28 @@ void ViewNeed::note(const core::SampleBatch& batch) {
   }
 }
 
-float ViewNeed::typical_novel_error() const {
+float ViewUtility::typical_novel_error() const {
   return novel_.count == 0 ? kNoiseFloor
                            : static_cast<float>(novel_.sum / static_cast<double>(novel_.count));
 }
 
-float ViewNeed::typical_familiar_error() const {
+float ViewUtility::typical_familiar_error() const {
   return familiar_.count == 0
              ? kNoiseFloor
              : static_cast<float>(familiar_.sum / static_cast<double>(familiar_.count));
 }
 
-float ViewNeed::novel_error(std::size_t patch_idx) const {
+float ViewUtility::novel_error(std::size_t patch_idx) const {
   const PatchKnowledge& patch = patches_[patch_idx];
   return drawn(patch.novel_error, patch.novel_count, typical_novel_error());
 }
 
-float ViewNeed::familiar_error(std::size_t patch_idx) const {
+float ViewUtility::familiar_error(std::size_t patch_idx) const {
   const PatchKnowledge& patch = patches_[patch_idx];
   return drawn(patch.familiar_error, patch.familiar_count, typical_familiar_error());
 }
 
-std::vector<float> smooth_novel_errors(const ViewNeed& need,
+std::vector<float> smooth_novel_errors(const ViewUtility& need,
                                        const core::VertexNeighbours& neighbours) {
   constexpr int passes = 2;
   const std::size_t count = need.patches().size();

@@ -4,7 +4,7 @@
 #include "app/preview/object_painter.h"
 #include "core/mesh/mesh.h"
 #include "core/samples/vertex_view.h"
-#include "fitting/guidance/view_need.h"
+#include "fitting/guidance/view_utility.h"
 
 #include <Eigen/Core>
 
@@ -20,30 +20,30 @@
 namespace sheen::app {
 
 /// What guidance needs to know, and what it says.
-struct GuideInput {
-  fitting::guidance::ViewNeed need;
+struct PlannerInput {
+  fitting::guidance::ViewUtility need;
   Eigen::Vector3f eye;  ///< present camera, object frame, metres
 };
-struct GuideAdvice {
+struct PlannerAdvice {
   PatchScores scores;
   double coverage = 0;
-  std::optional<Eigen::Vector3f> next_place;  ///< object frame, metres
+  std::optional<Eigen::Vector3f> next_best_view;  ///< object frame, metres
   std::shared_ptr<const std::vector<fitting::guidance::DirectionCells>> reachable;
 };
 
 /// Thinks about missing views in the background, on a thread of its own that rests longer than it
 /// works, so that the capture keeps the processor.
-class Guide {
+class NextBestViewPlanner {
  public:
   struct Parts {
-    const core::Mesh& mesh;  ///< outlives the guide
+    const core::Mesh& mesh;  ///< outlives the planner
     Eigen::Vector3f up;      ///< upright axis in the object frame
     core::SamplingLimits limits;
-    std::function<std::optional<GuideInput>()> ask;  ///< nothing: no camera has been posed yet
-    std::function<void(GuideAdvice)> tell;
+    std::function<std::optional<PlannerInput>()> ask;  ///< nothing: no camera has been posed yet
+    std::function<void(PlannerAdvice)> tell;
   };
 
-  explicit Guide(Parts parts);
+  explicit NextBestViewPlanner(Parts parts);
 
  private:
   void run(const std::stop_token& stop);

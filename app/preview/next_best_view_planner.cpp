@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "app/preview/guide.h"
+#include "app/preview/next_best_view_planner.h"
 
 #include "core/visibility/ray_caster.h"
 #include "fitting/guidance/candidate_views.h"
@@ -26,7 +26,7 @@ constexpr float kFullMisfit = 0.12f;
 
 /// Scores in [0, 1]. Views: deviation to expect from missing views, as a share of what a patch that
 /// nobody has seen has. Misfit: deviation in directions that were seen.
-PatchScores scores_of(const guidance::ViewNeed& need, const std::vector<float>& novel_error,
+PatchScores scores_of(const guidance::ViewUtility& need, const std::vector<float>& novel_error,
                       const std::vector<guidance::DirectionCells>& reachable) {
   PatchScores scores;
   const std::size_t count = reachable.size();
@@ -54,18 +54,18 @@ Eigen::Vector3f centre_of(const core::Mesh& mesh) {
 
 }  // namespace
 
-Guide::Guide(Parts parts)
+NextBestViewPlanner::NextBestViewPlanner(Parts parts)
     : parts_(std::move(parts)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
-bool Guide::rest(const std::stop_token& stop, std::chrono::nanoseconds length) {
+bool NextBestViewPlanner::rest(const std::stop_token& stop, std::chrono::nanoseconds length) {
   std::unique_lock lock(mutex_);
   wake_.wait_for(lock, stop, length, [] { return false; });
   return !stop.stop_requested();
 }
 
-void Guide::run(const std::stop_token& stop) {
+void NextBestViewPlanner::run(const std::stop_token& stop) {
   // Wait for the first camera: it says how far away cameras stand.
-  std::optional<GuideInput> input;
+  std::optional<PlannerInput> input;
   while (!(input = parts_.ask())) {
     if (!rest(stop, kShortestRest)) return;
   }
@@ -96,11 +96,11 @@ void Guide::run(const std::stop_token& stop) {
     }
     const auto novel_error = guidance::smooth_novel_errors(input->need, neighbours);
     const auto gains = views.gains(input->need.patches(), novel_error, area);
-    const auto next = guidance::next_place(views.places(), gains, centre, input->eye);
-    GuideAdvice advice{scores_of(input->need, novel_error, *reachable),
-                       guidance::coverage(input->need.patches(), *reachable, area), std::nullopt,
-                       reachable};
-    if (next) advice.next_place = views.places()[*next];
+    const auto next = guidance::next_best_view(views.places(), gains, centre, input->eye);
+    PlannerAdvice advice{scores_of(input->need, novel_error, *reachable),
+                         guidance::coverage(input->need.patches(), *reachable, area), std::nullopt,
+                         reachable};
+    if (next) advice.next_best_view = views.places()[*next];
     parts_.tell(std::move(advice));
     rest(stop, std::max<std::chrono::nanoseconds>(kRestPerThought * (Clock::now() - begin),
                                                   kShortestRest));

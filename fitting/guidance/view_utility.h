@@ -44,9 +44,9 @@ struct PatchKnowledge {
 /// have been seen. Two answers that are never mixed: where views are missing, and where the model
 /// fails in directions that it has seen (too simple, or misregistered). Independent of the
 /// representation; not thread-safe.
-class ViewNeed {
+class ViewUtility {
  public:
-  explicit ViewNeed(std::size_t patch_count) : patches_(patch_count) {}
+  explicit ViewUtility(std::size_t patch_count) : patches_(patch_count) {}
 
   /// Compares a batch with the model, before it is absorbed. Nothing is learnt yet.
   FrameScore score(const core::SampleBatch& batch, const LightField& model);
@@ -92,7 +92,7 @@ class ViewNeed {
 
 /// `novel_error` of every patch, averaged with its neighbours' and theirs: single patches have seen
 /// too little to be told apart.
-std::vector<float> smooth_novel_errors(const ViewNeed& need,
+std::vector<float> smooth_novel_errors(const ViewUtility& need,
                                        const core::VertexNeighbours& neighbours);
 
 /// Variance that missing views leave in a patch, as a mean over the directions `reachable`, sRGB^2:
