@@ -26,22 +26,24 @@ constexpr float kFullMisfit = 0.12f;
 
 /// Scores in [0, 1]. Views: deviation to expect from missing views, as a share of what a patch that
 /// nobody has seen has. Misfit: deviation in directions that were seen.
-PatchScores scores_of(const guidance::ViewUtility& need, const std::vector<float>& novel_error,
+PatchScores scores_of(const guidance::ViewUtility& need,
+                      const std::vector<float>& unseen_direction_error,
                       const std::vector<guidance::DirectionCells>& reachable) {
   PatchScores scores;
   const std::size_t count = reachable.size();
   scores.needs_views.resize(count);
   scores.misfit.resize(count);
-  const float typical = need.typical_novel_error();
+  const float typical = need.typical_unseen_direction_error();
   for (std::size_t i = 0; i < count; ++i) {
     const bool unseen = need.patches()[i].samples == 0;
     scores.needs_views[i] =
         unseen ? 1.0f
-               : std::min(1.0f, std::sqrt(guidance::missing_variance(need.patches()[i].seen,
-                                                                     reachable[i], novel_error[i]) /
-                                          typical));
+               : std::min(1.0f,
+                          std::sqrt(guidance::missing_variance(need.patches()[i].seen, reachable[i],
+                                                               unseen_direction_error[i]) /
+                                    typical));
     scores.misfit[i] =
-        unseen ? 0.0f : std::min(1.0f, std::sqrt(need.familiar_error(i)) / kFullMisfit);
+        unseen ? 0.0f : std::min(1.0f, std::sqrt(need.seen_direction_error(i)) / kFullMisfit);
   }
   return scores;
 }
@@ -94,10 +96,11 @@ void NextBestViewPlanner::run(const std::stop_token& stop) {
       rest(stop, kShortestRest);
       continue;
     }
-    const auto novel_error = guidance::smooth_novel_errors(input->need, neighbours);
-    const auto gains = views.gains(input->need.patches(), novel_error, area);
+    const auto unseen_direction_error =
+        guidance::smooth_unseen_direction_errors(input->need, neighbours);
+    const auto gains = views.gains(input->need.patches(), unseen_direction_error, area);
     const auto next = guidance::next_best_view(views.places(), gains, centre, input->eye);
-    PlannerAdvice advice{scores_of(input->need, novel_error, *reachable),
+    PlannerAdvice advice{scores_of(input->need, unseen_direction_error, *reachable),
                          guidance::coverage(input->need.patches(), *reachable, area), std::nullopt,
                          reachable};
     if (next) advice.next_best_view = views.places()[*next];

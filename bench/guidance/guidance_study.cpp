@@ -147,8 +147,8 @@ Curve guided_walk(const WalkScene& scene, const std::vector<Eigen::Vector3f>& ju
   const auto neighbours = core::vertex_neighbours(scene.mesh());
   Follower follower([&](const Eigen::Vector3f& eye) -> std::optional<Eigen::Vector3f> {
     const auto& need = walk.score.need;
-    const auto gains =
-        views.gains(need.patches(), guidance::smooth_novel_errors(need, neighbours), area);
+    const auto gains = views.gains(
+        need.patches(), guidance::smooth_unseen_direction_errors(need, neighbours), area);
     const auto next = guidance::next_best_view(views.places(), gains, {0, 0, 0}, eye);
     if (!next) return std::nullopt;
     return views.places()[*next];
@@ -192,8 +192,8 @@ void rank_patches(const Walk& walk, const guidance::CandidateViews& views,
       ++seen[error.vertex_idx];
     }
   }
-  const auto novel_error =
-      guidance::smooth_novel_errors(walk.score.need, core::vertex_neighbours(walk.scene.mesh()));
+  const auto unseen_direction_error = guidance::smooth_unseen_direction_errors(
+      walk.score.need, core::vertex_neighbours(walk.scene.mesh()));
   for (std::size_t i = 0; i < count; ++i) {
     const auto& known = walk.score.need.patches()[i];
     if (seen[i] == 0 || known.samples == 0) continue;
@@ -202,17 +202,17 @@ void rank_patches(const Walk& walk, const guidance::CandidateViews& views,
     scores["fewest samples"].push_back(-static_cast<double>(known.samples));
     scores["predicted variance"].push_back(
         static_cast<double>(guidance::variance_sum(known.seen, reachable)));
-    scores["needs views"].push_back(
-        static_cast<double>(guidance::missing_variance(known.seen, reachable, novel_error[i])));
-    scores["does not fit"].push_back(static_cast<double>(walk.score.need.familiar_error(i)));
+    scores["needs views"].push_back(static_cast<double>(
+        guidance::missing_variance(known.seen, reachable, unseen_direction_error[i])));
+    scores["does not fit"].push_back(static_cast<double>(walk.score.need.seen_direction_error(i)));
     scores["predicted error of the fitter"].push_back(predicted[i] / seen[i]);
   }
 }
 
 /// The same for single directions.
 void rank_directions(const Walk& walk, const std::vector<Eigen::Vector3f>& judges, Scores& scores) {
-  const auto novel_error =
-      guidance::smooth_novel_errors(walk.score.need, core::vertex_neighbours(walk.scene.mesh()));
+  const auto unseen_direction_error = guidance::smooth_unseen_direction_errors(
+      walk.score.need, core::vertex_neighbours(walk.scene.mesh()));
   for (const Eigen::Vector3f& eye : judges) {
     for (const auto& error : walk.scene.errors(walk.model->light_field(), eye)) {
       const auto& known = walk.score.need.patches()[error.vertex_idx];
@@ -222,9 +222,9 @@ void rank_directions(const Walk& walk, const std::vector<Eigen::Vector3f>& judge
       scores["fewest samples"].push_back(-static_cast<double>(known.samples));
       scores["predicted variance"].push_back(static_cast<double>(variance));
       scores["needs views"].push_back(
-          static_cast<double>(variance * novel_error[error.vertex_idx]));
+          static_cast<double>(variance * unseen_direction_error[error.vertex_idx]));
       scores["does not fit"].push_back(
-          static_cast<double>(walk.score.need.familiar_error(error.vertex_idx)));
+          static_cast<double>(walk.score.need.seen_direction_error(error.vertex_idx)));
       scores["predicted error of the fitter"].push_back(static_cast<double>(
           walk.model->predicted_error(error.vertex_idx, error.uv).value_or(1.0f)));
     }

@@ -59,13 +59,13 @@ CandidateViews::CandidateViews(const core::Mesh& mesh, const core::RayCaster& ca
 }
 
 std::vector<double> CandidateViews::gains(const std::vector<PatchKnowledge>& patches,
-                                          const std::vector<float>& novel_error,
+                                          const std::vector<float>& unseen_direction_error,
                                           const std::vector<float>& area) const {
   std::vector<float> scale(patches.size());
   std::vector<float> before(patches.size());
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const int wanted = std::max(1, std::popcount(reachable_[i]));
-    scale[i] = area[i] * novel_error[i] / static_cast<float>(wanted);
+    scale[i] = area[i] * unseen_direction_error[i] / static_cast<float>(wanted);
     before[i] = variance_sum(patches[i].seen, reachable_[i]);
   }
   std::vector<double> gains(places_.size(), 0);

@@ -35,9 +35,9 @@ class CandidateViews {
 
   /// Variance that a view from every place would take away, weighed by the patches' areas: the sum
   /// over the patches seen of area x (missing before - missing after). Same order as `places`.
-  /// `novel_error` and `area` have an entry per patch.
+  /// `unseen_direction_error` and `area` have an entry per patch.
   [[nodiscard]] std::vector<double> gains(const std::vector<PatchKnowledge>& patches,
-                                          const std::vector<float>& novel_error,
+                                          const std::vector<float>& unseen_direction_error,
                                           const std::vector<float>& area) const;
 
  private:

@@ -46,7 +46,8 @@ double ViewUtility::median_normalised_residual(const core::SampleBatch& batch, f
     const Prediction& p = predictions_[i];
     if (p.variance != 0) continue;
     const float squared = (p.measured / gain - p.predicted).squaredNorm() / 3;
-    scratch_.push_back(static_cast<double>(std::sqrt(squared / familiar_error(batch.patch[i]))));
+    scratch_.push_back(
+        static_cast<double>(std::sqrt(squared / seen_direction_error(batch.patch[i]))));
   }
   return scratch_.empty() ? 0 : core::upper_median(scratch_);
 }
@@ -99,10 +100,11 @@ void ViewUtility::note(const core::SampleBatch& batch) {
     PatchKnowledge& patch = patches_[batch.patch[i]];
     const Prediction& prediction = predictions_[i];
     if (prediction.variance == 0) {
-      learn(patch.familiar_error, patch.familiar_count, prediction.squared_error(), familiar_);
+      learn(patch.seen_direction_error, patch.seen_direction_count, prediction.squared_error(),
+            seen_direction_);
     } else if (prediction.variance > 0) {
-      learn(patch.novel_error, patch.novel_count, prediction.squared_error() / prediction.variance,
-            novel_);
+      learn(patch.unseen_direction_error, patch.unseen_direction_count,
+            prediction.squared_error() / prediction.variance, unseen_direction_);
     }
     if (!usable_sample(batch, i)) continue;
     ++patch.samples;
@@ -110,33 +112,37 @@ void ViewUtility::note(const core::SampleBatch& batch) {
   }
 }
 
-float ViewUtility::typical_novel_error() const {
-  return novel_.count == 0 ? kNoiseFloor
-                           : static_cast<float>(novel_.sum / static_cast<double>(novel_.count));
-}
-
-float ViewUtility::typical_familiar_error() const {
-  return familiar_.count == 0
+float ViewUtility::typical_unseen_direction_error() const {
+  return unseen_direction_.count == 0
              ? kNoiseFloor
-             : static_cast<float>(familiar_.sum / static_cast<double>(familiar_.count));
+             : static_cast<float>(unseen_direction_.sum /
+                                  static_cast<double>(unseen_direction_.count));
 }
 
-float ViewUtility::novel_error(std::size_t patch_idx) const {
+float ViewUtility::typical_seen_direction_error() const {
+  return seen_direction_.count == 0
+             ? kNoiseFloor
+             : static_cast<float>(seen_direction_.sum / static_cast<double>(seen_direction_.count));
+}
+
+float ViewUtility::unseen_direction_error(std::size_t patch_idx) const {
   const PatchKnowledge& patch = patches_[patch_idx];
-  return drawn(patch.novel_error, patch.novel_count, typical_novel_error());
+  return drawn(patch.unseen_direction_error, patch.unseen_direction_count,
+               typical_unseen_direction_error());
 }
 
-float ViewUtility::familiar_error(std::size_t patch_idx) const {
+float ViewUtility::seen_direction_error(std::size_t patch_idx) const {
   const PatchKnowledge& patch = patches_[patch_idx];
-  return drawn(patch.familiar_error, patch.familiar_count, typical_familiar_error());
+  return drawn(patch.seen_direction_error, patch.seen_direction_count,
+               typical_seen_direction_error());
 }
 
-std::vector<float> smooth_novel_errors(const ViewUtility& need,
-                                       const core::VertexNeighbours& neighbours) {
+std::vector<float> smooth_unseen_direction_errors(const ViewUtility& need,
+                                                  const core::VertexNeighbours& neighbours) {
   constexpr int passes = 2;
   const std::size_t count = need.patches().size();
   std::vector<float> errors(count);
-  for (std::size_t i = 0; i < count; ++i) errors[i] = need.novel_error(i);
+  for (std::size_t i = 0; i < count; ++i) errors[i] = need.unseen_direction_error(i);
   std::vector<float> before;
   for (int pass = 0; pass < passes; ++pass) {
     before = errors;
@@ -149,8 +155,9 @@ std::vector<float> smooth_novel_errors(const ViewUtility& need,
   return errors;
 }
 
-float missing_variance(DirectionCells seen, DirectionCells reachable, float novel_error) {
-  return novel_error * variance_sum(seen, reachable) /
+float missing_variance(DirectionCells seen, DirectionCells reachable,
+                       float unseen_direction_error) {
+  return unseen_direction_error * variance_sum(seen, reachable) /
          static_cast<float>(std::max(1, std::popcount(reachable)));
 }
 

@@ -34,10 +34,10 @@ struct PatchKnowledge {
   std::uint32_t samples = 0;
   /// Mean squared error of predictions towards new directions, per predicted variance; and towards
   /// directions that had been seen. sRGB, mean of the channels.
-  float novel_error = 0;
-  float familiar_error = 0;
-  std::uint16_t novel_count = 0;
-  std::uint16_t familiar_count = 0;
+  float unseen_direction_error = 0;
+  float seen_direction_error = 0;
+  std::uint16_t unseen_direction_count = 0;
+  std::uint16_t seen_direction_count = 0;
 };
 
 /// Keeps score of how well views are predicted before they are absorbed, and from where patches
@@ -57,13 +57,14 @@ class ViewUtility {
   [[nodiscard]] const std::vector<PatchKnowledge>& patches() const { return patches_; }
 
   /// Error variance to expect of a patch towards a direction that nobody has looked from, sRGB^2:
-  /// what new directions have shown there, drawn towards `typical_novel_error` while they are few.
-  [[nodiscard]] float novel_error(std::size_t patch_idx) const;
+  /// what new directions have shown there, drawn towards `typical_unseen_direction_error` while
+  /// they are few.
+  [[nodiscard]] float unseen_direction_error(std::size_t patch_idx) const;
   /// The same towards directions seen before: noise, misregistration, too few terms.
-  [[nodiscard]] float familiar_error(std::size_t patch_idx) const;
+  [[nodiscard]] float seen_direction_error(std::size_t patch_idx) const;
   /// Means over patches that have been predicted at all.
-  [[nodiscard]] float typical_novel_error() const;
-  [[nodiscard]] float typical_familiar_error() const;
+  [[nodiscard]] float typical_unseen_direction_error() const;
+  [[nodiscard]] float typical_seen_direction_error() const;
 
  private:
   struct Totals {
@@ -85,19 +86,19 @@ class ViewUtility {
   static void learn(float& mean, std::uint16_t& count, float value, Totals& totals);
 
   std::vector<PatchKnowledge> patches_;
-  Totals novel_, familiar_;
+  Totals unseen_direction_, seen_direction_;
   std::vector<Prediction> predictions_;  ///< of the batch scored last
   std::vector<double> scratch_;
 };
 
-/// `novel_error` of every patch, averaged with its neighbours' and theirs: single patches have seen
-/// too little to be told apart.
-std::vector<float> smooth_novel_errors(const ViewUtility& need,
-                                       const core::VertexNeighbours& neighbours);
+/// `unseen_direction_error` of every patch, averaged with its neighbours' and theirs: single
+/// patches have seen too little to be told apart.
+std::vector<float> smooth_unseen_direction_errors(const ViewUtility& need,
+                                                  const core::VertexNeighbours& neighbours);
 
 /// Variance that missing views leave in a patch, as a mean over the directions `reachable`, sRGB^2:
-/// predicted variance x `novel_error`. 0 where nothing is reachable.
-float missing_variance(DirectionCells seen, DirectionCells reachable, float novel_error);
+/// predicted variance x `unseen_direction_error`. 0 where nothing is reachable.
+float missing_variance(DirectionCells seen, DirectionCells reachable, float unseen_direction_error);
 
 /// Share of the directions `reachable` that has been seen from close by, weighed by area: the
 /// coverage of an object, [0, 1]. All three have an entry per patch; patches without reachable

@@ -90,11 +90,11 @@ TEST(ViewUtility, PerfectPredictionsNeedNoViewsThere) {
     need.note(batch);
     model->absorb(batch);
   }
-  EXPECT_LE(need.familiar_error(0), 1.1e-4f);
+  EXPECT_LE(need.seen_direction_error(0), 1.1e-4f);
   const DirectionCells seen = cell_bit(cell_of({0.1f, 0.1f}));
   EXPECT_EQ(need.patches()[0].seen, seen);
-  EXPECT_EQ(missing_variance(need.patches()[0].seen, seen, need.novel_error(0)), 0);
-  EXPECT_GT(missing_variance(need.patches()[0].seen, kAll, need.novel_error(0)), 0);
+  EXPECT_EQ(missing_variance(need.patches()[0].seen, seen, need.unseen_direction_error(0)), 0);
+  EXPECT_GT(missing_variance(need.patches()[0].seen, kAll, need.unseen_direction_error(0)), 0);
 }
 
 TEST(ViewUtility, TellsMissingViewsFromAModelThatIsTooSimple) {
@@ -113,11 +113,11 @@ TEST(ViewUtility, TellsMissingViewsFromAModelThatIsTooSimple) {
     need.note(batch);
     model->absorb(batch);
   }
-  EXPECT_GT(missing_variance(need.patches()[0].seen, swept, need.novel_error(0)), 0);
-  EXPECT_EQ(missing_variance(need.patches()[1].seen, swept, need.novel_error(1)), 0);
+  EXPECT_GT(missing_variance(need.patches()[0].seen, swept, need.unseen_direction_error(0)), 0);
+  EXPECT_EQ(missing_variance(need.patches()[1].seen, swept, need.unseen_direction_error(1)), 0);
   // The flicker is .3 either side of the mean: .09 squared. A steady patch is at the noise floor.
-  EXPECT_NEAR(need.familiar_error(1), 0.09f, 0.01f);
-  EXPECT_LT(need.familiar_error(0), 0.02f);
+  EXPECT_NEAR(need.seen_direction_error(1), 0.09f, 0.01f);
+  EXPECT_LT(need.seen_direction_error(0), 0.02f);
 }
 
 TEST(ViewUtility, IgnoresWhatIsNotANumber) {
@@ -132,7 +132,8 @@ TEST(ViewUtility, IgnoresWhatIsNotANumber) {
     model->absorb(batch);
   }
   EXPECT_EQ(need.patches()[0].samples, 2u);
-  EXPECT_TRUE(std::isfinite(need.novel_error(0)) && std::isfinite(need.familiar_error(0)));
+  EXPECT_TRUE(std::isfinite(need.unseen_direction_error(0)) &&
+              std::isfinite(need.seen_direction_error(0)));
 }
 
 TEST(Coverage, GoesFromNothingToAll) {
@@ -257,7 +258,8 @@ TEST_F(CandidatesRoundASphere, ThePlaceJustVisitedHasNothingMoreToOffer) {
   const auto batch = seen_from(views_.places()[10]);
   need.score(batch, model->light_field());
   need.note(batch);
-  const auto gains = views_.gains(need.patches(), smooth_novel_errors(need, neighbours_), area_);
+  const auto gains =
+      views_.gains(need.patches(), smooth_unseen_direction_errors(need, neighbours_), area_);
   EXPECT_NEAR(gains[10], 0, 1e-12);
   EXPECT_GT(*std::max_element(gains.begin(), gains.end()), 0);
 }
@@ -276,7 +278,8 @@ TEST_F(CandidatesRoundASphere, VisitingEveryPlaceCoversTheObject) {
     last = now;
   }
   EXPECT_DOUBLE_EQ(last, 1);
-  const auto gains = views_.gains(need.patches(), smooth_novel_errors(need, neighbours_), area_);
+  const auto gains =
+      views_.gains(need.patches(), smooth_unseen_direction_errors(need, neighbours_), area_);
   EXPECT_FALSE(next_best_view(views_.places(), gains, {0, 0, 0}, {5, 0, 0}));
 }
 
