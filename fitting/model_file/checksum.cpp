@@ -24,13 +24,13 @@ std::string fnv1a64(std::string_view bytes) {
 
 }  // namespace
 
-void seal(std::string& file) {
+void write_checksum(std::string& file) {
   const std::size_t place = file.find(kChecksumPlaceholder);
   assert(place != std::string::npos);
   file.replace(place + kPrefix.size(), kDigits, fnv1a64(file));
 }
 
-bool is_sealed(std::string file) {
+bool has_valid_checksum(std::string file) {
   const std::size_t place = file.find(kPrefix);
   if (place == std::string::npos || file.size() - place < kPrefix.size() + kDigits) return false;
   const std::string digits = file.substr(place + kPrefix.size(), kDigits);

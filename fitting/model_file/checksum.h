@@ -10,9 +10,9 @@ namespace sheen::fitting {
 inline constexpr const char* kChecksumPlaceholder = "fnv1a64:0000000000000000";
 
 /// Replaces the placeholder, which must occur, by the checksum.
-void seal(std::string& file);
+void write_checksum(std::string& file);
 
 /// Whether the file carries its own checksum.
-bool is_sealed(std::string file);
+bool has_valid_checksum(std::string file);
 
 }  // namespace sheen::fitting

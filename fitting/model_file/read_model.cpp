@@ -156,7 +156,8 @@ Model parse_model(std::string file) {
   if (!extensions.is_object() || !extensions.contains(kExtension)) {
     throw ModelFault(std::string("it does not hold the extension ") + kExtension);
   }
-  if (!is_sealed(file)) throw ModelFault("its checksum does not fit: the file was altered");
+  if (!has_valid_checksum(file))
+    throw ModelFault("its checksum does not fit: the file was altered");
   Model model;
   model.mesh = read_mesh_part(glb);
   model.light_field = read_light_field(glb, model.mesh.positions.size());

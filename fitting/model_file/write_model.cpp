@@ -138,7 +138,7 @@ void write_model(const std::filesystem::path& path, const core::Mesh& mesh,
                       "the model passes the 4 GiB that a glb file can hold",
                       "use fewer centres, fewer terms or a coarser mesh");
   }
-  seal(*bytes);
+  write_checksum(*bytes);
   write_bytes(path, *bytes);
 }
 

@@ -42,14 +42,14 @@ class HostileModelFile : public ::testing::Test {
   }
 
   // The good file after a change by someone who knows how to compute the checksum.
-  std::string resealed(const std::function<void(json&, std::string&)>& change) {
+  std::string with_new_checksum(const std::function<void(json&, std::string&)>& change) {
     const Glb glb = parse_glb(good_);
     json document = glb.document;
     std::string binary(reinterpret_cast<const char*>(glb.binary.data()), glb.binary.size());
     document["extensions"][kExtension]["checksum"] = kChecksumPlaceholder;
     change(document, binary);
     std::string file = *glb_bytes(document, binary);
-    if (file.find(kChecksumPlaceholder) != std::string::npos) seal(file);
+    if (file.find(kChecksumPlaceholder) != std::string::npos) write_checksum(file);
     return file;
   }
 
@@ -58,8 +58,8 @@ class HostileModelFile : public ::testing::Test {
   std::string message_;
 };
 
-TEST_F(HostileModelFile, ResealingAloneIsAccepted) {
-  EXPECT_FALSE(refused(resealed([](json&, std::string&) {})));
+TEST_F(HostileModelFile, NewChecksumAloneIsAccepted) {
+  EXPECT_FALSE(refused(with_new_checksum([](json&, std::string&) {})));
 }
 
 TEST_F(HostileModelFile, EveryTruncationIsRefused) {
@@ -84,8 +84,8 @@ TEST_F(HostileModelFile, ForeignFilesAreRefused) {
   EXPECT_TRUE(refused(""));
   EXPECT_TRUE(refused(std::string(1000, '\0')));
   EXPECT_TRUE(refused("ply\nformat binary_little_endian 1.0\n"));
-  EXPECT_TRUE(
-      refused(resealed([](json& document, std::string&) { document.erase("extensions"); })));
+  EXPECT_TRUE(refused(
+      with_new_checksum([](json& document, std::string&) { document.erase("extensions"); })));
   EXPECT_NE(message_.find(kExtension), std::string::npos);
   EXPECT_THROW(read_model(folder_ / "absent.glb"), core::Error);
   std::filesystem::create_directories(folder_ / "folder.glb");
@@ -145,8 +145,9 @@ TEST_F(HostileModelFile, BrokenStructureIsRefused) {
       [](json& d) { d["meshes"][0]["primitives"][0]["indices"] = 1e30; },
   };
   for (std::size_t i = 0; i < changes.size(); ++i) {
-    EXPECT_TRUE(refused(resealed([&](json& document, std::string&) { changes[i](document); })))
-        << i;
+    EXPECT_TRUE(refused(with_new_checksum([&](json& document, std::string&) {
+      changes[i](document);
+    }))) << i;
   }
 }
 
@@ -171,7 +172,7 @@ TEST_F(HostileModelFile, DeepNestingDoesNotCrash) {
 TEST_F(HostileModelFile, BrokenNumbersAreRefused) {
   const auto refuses_in_view = [&](const std::function<std::size_t(const json&)>& view_of,
                                    const std::string& bytes) {
-    return refused(resealed([&](json& document, std::string& binary) {
+    return refused(with_new_checksum([&](json& document, std::string& binary) {
       const json& view = document["bufferViews"][view_of(document)];
       binary.replace(view["byteOffset"].get<std::size_t>(), bytes.size(), bytes);
     }));
