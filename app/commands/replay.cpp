@@ -33,20 +33,21 @@ struct LightFields {
   /// Null when nobody asks for mean colours, or `fitted` is the mean itself.
   std::unique_ptr<fitting::Representation> mean;
   /// The same two where views may be taken back; else null.
-  fitting::RewindableRepresentation* fitted_history = nullptr;
-  fitting::RewindableRepresentation* mean_history = nullptr;
+  fitting::UndoableFitter* fitted_history = nullptr;
+  fitting::UndoableFitter* mean_history = nullptr;
 
   LightFields(const ReplayOptions& options, const core::Mesh& mesh, int threads) {
     const auto neighbours = core::vertex_neighbours(mesh);
     const fitting::RepresentationOptions fit_options{
         .iwls = options.iwls, .threads = threads, .sparse = options.sparse};
-    const auto make = [&](const std::string& name, fitting::RewindableRepresentation*& history)
-        -> std::unique_ptr<fitting::Representation> {
+    const auto make =
+        [&](const std::string& name,
+            fitting::UndoableFitter*& history) -> std::unique_ptr<fitting::Representation> {
       if (!options.preview) return fitting::make_representation(name, neighbours, fit_options);
-      auto rewindable = std::make_unique<fitting::RewindableRepresentation>(
+      auto undoable = std::make_unique<fitting::UndoableFitter>(
           [=] { return fitting::make_representation(name, neighbours, fit_options); });
-      history = rewindable.get();
-      return rewindable;
+      history = undoable.get();
+      return undoable;
     };
     fitted = make(options.registered_name(), fitted_history);
     const bool is_asked_for = options.session.hold_out > 0 || !options.mean_output.empty();

@@ -126,7 +126,7 @@ void LiveSession::undo(double seconds) {
   std::size_t views = 0;
   {
     const std::lock_guard lock(mutex_);
-    if (!parts_.history.can_rewind()) {
+    if (!parts_.history.can_undo()) {
       status_.note = "Nothing can be taken back: the disk for temporary files is full";
       return;
     }
@@ -141,13 +141,13 @@ void LiveSession::undo(double seconds) {
   // Build everything anew without those views.
   guidance::CaptureScore score(parts_.mesh.positions.size());
   parts_.model.with([&](const fitting::Representation&) {
-    parts_.history.rewind(views,
-                          [&](const core::SampleBatch& batch, const fitting::LightField& model) {
-                            score.judge(batch, model);
-                            score.note(batch, 0);
-                          });
+    parts_.history.undo(views,
+                        [&](const core::SampleBatch& batch, const fitting::LightField& model) {
+                          score.judge(batch, model);
+                          score.note(batch, 0);
+                        });
     if (parts_.baseline != nullptr) {
-      parts_.baseline->rewind(views, [](const core::SampleBatch&, const fitting::LightField&) {});
+      parts_.baseline->undo(views, [](const core::SampleBatch&, const fitting::LightField&) {});
     }
   });
 
@@ -228,7 +228,7 @@ void LiveSession::take(PlannerAdvice advice) {
 bool LiveSession::try_look(const Look& look) {
   return parts_.model.try_look(
       [&](const fitting::Representation& representation, const fitting::ModelUpdate& changes) {
-        look(representation.light_field(), changes, parts_.history.rewinds());
+        look(representation.light_field(), changes, parts_.history.undos());
       });
 }
 

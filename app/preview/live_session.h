@@ -8,7 +8,7 @@
 #include "app/preview/next_best_view_planner.h"
 #include "core/geometry/camera.h"
 #include "fitting/guidance/capture_score.h"
-#include "fitting/rewind/rewindable_representation.h"
+#include "fitting/undo/undoable_fitter.h"
 
 #include <condition_variable>
 #include <deque>
@@ -29,8 +29,8 @@ class LiveSession {
  public:
   struct Parts {
     SharedModel& model;  ///< over `history`
-    fitting::RewindableRepresentation& history;
-    fitting::RewindableRepresentation* baseline;  ///< is rewound with it; may be null
+    fitting::UndoableFitter& history;
+    fitting::UndoableFitter* baseline;  ///< is undone with it; may be null
     const core::Mesh& mesh;
     core::CameraModel camera;
     Eigen::Isometry3d board_from_object;
@@ -69,9 +69,9 @@ class LiveSession {
   [[nodiscard]] fitting::guidance::PatchKnowledge knowledge_of(std::size_t patch_idx) const;
 
   /// Shows the model and what changed since the last look, unless it is being fitted just now.
-  /// After an undo (`rewinds` has grown) it is another object. Returns whether there was a look.
+  /// After an undo (`undos` has grown) it is another object. Returns whether there was a look.
   using Look = std::function<void(const fitting::LightField&, const fitting::ModelUpdate& changes,
-                                  std::size_t rewinds)>;
+                                  std::size_t undos)>;
   bool try_look(const Look& look);
 
   void set_paused(bool paused);

@@ -83,11 +83,11 @@ void PreviewWindow::take_news() {
 
 void PreviewWindow::look_at_model() {
   subject_.live->try_look([this](const fitting::LightField& light_field,
-                                 const fitting::ModelUpdate& changes, std::size_t rewinds) {
-    if (!has_model_ || rewinds != rewinds_) {
+                                 const fitting::ModelUpdate& changes, std::size_t undos) {
+    if (!has_model_ || undos != undos_) {
       painter_.show(light_field);
       has_model_ = true;
-      rewinds_ = rewinds;
+      undos_ = undos;
     } else {
       painter_.note_changes(changes);
     }

@@ -68,7 +68,7 @@ class PreviewWindow {
   int shown_frame_ = -1;  ///< frames_read when the image was taken over
   CameraTrail trail_;
   std::size_t generation_ = 0;
-  std::size_t rewinds_ = 0;
+  std::size_t undos_ = 0;
   bool has_model_ = false;
   std::shared_ptr<const std::vector<fitting::guidance::DirectionCells>> reachable_;
   bool snapshot_wanted_ = false;

@@ -89,7 +89,7 @@ class Capture {
   const core::Mesh& mesh_;
   const capture::Session& session_;
   int threads_;
-  fitting::RewindableRepresentation history_;
+  fitting::UndoableFitter history_;
   app::SharedModel model_;
   app::LiveSession live_;
   CameraPace pace_;

@@ -240,7 +240,7 @@ class LivePipeline {
   tests::TemporaryFolder folder_;
   capture::Session session_;
   core::Mesh mesh_;
-  fitting::RewindableRepresentation history_;
+  fitting::UndoableFitter history_;
   SharedModel model_;
   LiveSession live_;
   PoseStage poses_;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "fitting/representation.h"
-#include "fitting/rewind/sample_log.h"
+#include "fitting/undo/sample_log.h"
 
 #include <functional>
 #include <memory>
@@ -14,18 +14,18 @@ namespace sheen::fitting {
 /// forget, builds itself anew from those that stay. So undo is as right as the fit itself, whatever
 /// the representation, and takes as long as the fit of what stays. Where there is no room for the
 /// batches the fit goes on and only forgetting is over.
-class RewindableRepresentation final : public Representation {
+class UndoableFitter final : public Representation {
  public:
   using Factory = std::function<std::unique_ptr<Representation>()>;
   /// Gets a batch and the light field just before it is absorbed.
   using BeforeView = std::function<void(const core::SampleBatch&, const LightField&)>;
 
   /// `make` gives an empty representation, the same every time.
-  explicit RewindableRepresentation(Factory make);
+  explicit UndoableFitter(Factory make);
 
   const ModelUpdate& absorb(const core::SampleBatch& batch) override;
   const ModelUpdate& finish() override { return inner_->finish(); }
-  /// Another object after `rewind`.
+  /// Another object after `undo`.
   [[nodiscard]] const LightField& light_field() const override { return inner_->light_field(); }
   [[nodiscard]] FitStatistics statistics() const override { return inner_->statistics(); }
   [[nodiscard]] std::optional<float> predicted_error(std::size_t patch_idx,
@@ -33,22 +33,22 @@ class RewindableRepresentation final : public Representation {
     return inner_->predicted_error(patch_idx, uv);
   }
 
-  /// Times that `rewind` has been called.
-  [[nodiscard]] std::size_t rewinds() const { return rewinds_; }
+  /// Times that `undo` has been called.
+  [[nodiscard]] std::size_t undos() const { return undos_; }
 
   /// False once a batch could not be kept.
-  [[nodiscard]] bool can_rewind() const { return log_.has_value(); }
+  [[nodiscard]] bool can_undo() const { return log_.has_value(); }
 
   /// Becomes what it would be had it never seen the last `views`, at most all, and never been asked
-  /// to `finish`. All patches may have changed. Only while `can_rewind`. Throws core::Error
+  /// to `finish`. All patches may have changed. Only while `can_undo`. Throws core::Error
   /// (run_failed) when the batches cannot be read back.
-  void rewind(std::size_t views, const BeforeView& before_view);
+  void undo(std::size_t views, const BeforeView& before_view);
 
  private:
   Factory make_;
   std::unique_ptr<Representation> inner_;
   std::optional<SampleLog> log_;
-  std::size_t rewinds_ = 0;
+  std::size_t undos_ = 0;
 };
 
 }  // namespace sheen::fitting

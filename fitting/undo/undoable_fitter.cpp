@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fitting/rewind/rewindable_representation.h"
+#include "fitting/undo/undoable_fitter.h"
 
 #include "core/diagnostics/error.h"
 
@@ -9,10 +9,10 @@
 
 namespace sheen::fitting {
 
-RewindableRepresentation::RewindableRepresentation(Factory make)
+UndoableFitter::UndoableFitter(Factory make)
     : make_(std::move(make)), inner_(make_()), log_(std::in_place) {}
 
-const ModelUpdate& RewindableRepresentation::absorb(const core::SampleBatch& batch) {
+const ModelUpdate& UndoableFitter::absorb(const core::SampleBatch& batch) {
   if (log_) {
     try {
       log_->append(batch);
@@ -23,11 +23,11 @@ const ModelUpdate& RewindableRepresentation::absorb(const core::SampleBatch& bat
   return inner_->absorb(batch);
 }
 
-void RewindableRepresentation::rewind(std::size_t views, const BeforeView& before_view) {
+void UndoableFitter::undo(std::size_t views, const BeforeView& before_view) {
   assert(log_);
   log_->truncate(log_->size() - std::min(views, log_->size()));
   inner_ = make_();
-  ++rewinds_;
+  ++undos_;
   core::SampleBatch batch;
   for (std::size_t i = 0; i < log_->size(); ++i) {
     log_->read(i, batch);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fitting/rewind/sample_log.h"
+#include "fitting/undo/sample_log.h"
 
 #include "core/diagnostics/error.h"
 

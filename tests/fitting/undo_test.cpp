@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/model_file/model_codec.h"
-#include "fitting/rewind/rewindable_representation.h"
+#include "fitting/undo/undoable_fitter.h"
 #include "tests/fitting/samples_for_tests.h"
 
 #include <gtest/gtest.h>
@@ -10,23 +10,23 @@ namespace {
 
 constexpr std::size_t kPatches = 300;
 
-class Rewind : public ::testing::TestWithParam<std::string> {
+class Undo : public ::testing::TestWithParam<std::string> {
  protected:
   static std::unique_ptr<Representation> make() {
     return make_representation(GetParam(), testing::isolated(kPatches), {.iwls = {}, .threads = 1});
   }
 };
 
-TEST_P(Rewind, ModelEqualsOneThatNeverSawTheUndoneViews) {
+TEST_P(Undo, ModelEqualsOneThatNeverSawTheUndoneViews) {
   std::mt19937 random(3);
   std::vector<core::SampleBatch> views;
   for (int i = 0; i < 30; ++i) views.push_back(testing::random_view(kPatches, random));
 
   // One sees 20 views, takes 8 back and sees 10 more; the other sees 12 and the same 10.
-  RewindableRepresentation undone(make);
+  UndoableFitter undone(make);
   const auto never_saw = make();
   for (int i = 0; i < 20; ++i) undone.absorb(views[i]);
-  undone.rewind(8, [](const core::SampleBatch&, const LightField&) {});
+  undone.undo(8, [](const core::SampleBatch&, const LightField&) {});
   for (int i = 0; i < 12; ++i) never_saw->absorb(views[i]);
   EXPECT_EQ(testing::bytes_of(undone.light_field()), testing::bytes_of(never_saw->light_field()));
   for (int i = 20; i < 30; ++i) {
@@ -40,18 +40,18 @@ TEST_P(Rewind, ModelEqualsOneThatNeverSawTheUndoneViews) {
   EXPECT_EQ(undone.statistics().samples, never_saw->statistics().samples);
 }
 
-TEST_P(Rewind, TakingEverythingBackLeavesAnEmptyModel) {
+TEST_P(Undo, TakingEverythingBackLeavesAnEmptyModel) {
   std::mt19937 random(4);
-  RewindableRepresentation representation(make);
+  UndoableFitter representation(make);
   const std::string empty = testing::bytes_of(representation.light_field());
   for (int i = 0; i < 3; ++i) representation.absorb(testing::random_view(kPatches, random));
   EXPECT_NE(testing::bytes_of(representation.light_field()), empty);
-  representation.rewind(100, [](const core::SampleBatch&, const LightField&) {});
+  representation.undo(100, [](const core::SampleBatch&, const LightField&) {});
   EXPECT_EQ(testing::bytes_of(representation.light_field()), empty);
   EXPECT_EQ(representation.statistics().samples, 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryRepresentation, Rewind, ::testing::ValuesIn(representation_names()),
+INSTANTIATE_TEST_SUITE_P(EveryRepresentation, Undo, ::testing::ValuesIn(representation_names()),
                          [](const auto& each) {
                            std::string name = each.param;
                            std::erase(name, '-');
