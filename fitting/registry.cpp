@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/registry.h"
 
-#include "fitting/iwls/iwls_representation.h"
+#include "fitting/iwls/iwls_fitter.h"
 #include "fitting/iwls/model_codec.h"
-#include "fitting/mean/mean_representation.h"
+#include "fitting/mean/mean_fitter.h"
 #include "fitting/mean/model_codec.h"
 #include "fitting/model_file/model_codec.h"
 #include "fitting/nearest_views/model_codec.h"
-#include "fitting/nearest_views/nearest_representation.h"
+#include "fitting/nearest_views/nearest_fitter.h"
 #include "fitting/sparse/model_codec.h"
-#include "fitting/sparse/sparse_representation.h"
-#include "fitting/spherical_harmonics/harmonics_representation.h"
+#include "fitting/sparse/sparse_fitter.h"
+#include "fitting/spherical_harmonics/harmonics_fitter.h"
 #include "fitting/spherical_harmonics/model_codec.h"
 
 #include <array>
@@ -21,35 +21,31 @@ namespace {
 
 using Neighbours = core::VertexNeighbours;
 
-std::unique_ptr<Representation> make_iwls(const Neighbours& neighbours,
-                                          const RepresentationOptions& options) {
-  return iwls::make_iwls_representation(neighbours, options.iwls, options.threads);
+std::unique_ptr<Fitter> make_iwls(const Neighbours& neighbours, const FitOptions& options) {
+  return iwls::make_iwls_fitter(neighbours, options.iwls, options.threads);
 }
 
-std::unique_ptr<Representation> make_mean(const Neighbours& neighbours,
-                                          const RepresentationOptions& options) {
-  return mean::make_mean_representation(neighbours, options.threads);
+std::unique_ptr<Fitter> make_mean(const Neighbours& neighbours, const FitOptions& options) {
+  return mean::make_mean_fitter(neighbours, options.threads);
 }
 
-std::unique_ptr<Representation> make_harmonics(const Neighbours& neighbours,
-                                               const RepresentationOptions& options) {
-  return spherical_harmonics::make_harmonics_representation(neighbours, options.spherical_harmonics,
-                                                            options.threads);
+std::unique_ptr<Fitter> make_harmonics(const Neighbours& neighbours, const FitOptions& options) {
+  return spherical_harmonics::make_harmonics_fitter(neighbours, options.spherical_harmonics,
+                                                    options.threads);
 }
 
-std::unique_ptr<Representation> make_nearest_views(const Neighbours& neighbours,
-                                                   const RepresentationOptions& options) {
-  return nearest_views::make_nearest_representation(neighbours, options.threads);
+std::unique_ptr<Fitter> make_nearest_views(const Neighbours& neighbours,
+                                           const FitOptions& options) {
+  return nearest_views::make_nearest_fitter(neighbours, options.threads);
 }
 
-std::unique_ptr<Representation> make_sparse(const Neighbours& neighbours,
-                                            const RepresentationOptions& options) {
-  return sparse::make_sparse_representation(neighbours, options.sparse, options.threads);
+std::unique_ptr<Fitter> make_sparse(const Neighbours& neighbours, const FitOptions& options) {
+  return sparse::make_sparse_fitter(neighbours, options.sparse, options.threads);
 }
 
 struct Entry {
   const char* name;
-  std::unique_ptr<Representation> (*make)(const Neighbours&, const RepresentationOptions&);
+  std::unique_ptr<Fitter> (*make)(const Neighbours&, const FitOptions&);
 };
 
 constexpr std::array kRepresentations{Entry{"iwls", make_iwls}, Entry{"mean", make_mean},
@@ -71,9 +67,8 @@ std::vector<std::string> representation_names() {
   return names;
 }
 
-std::unique_ptr<Representation> make_representation(const std::string& name,
-                                                    const Neighbours& neighbours,
-                                                    const RepresentationOptions& options) {
+std::unique_ptr<Fitter> make_fitter(const std::string& name, const Neighbours& neighbours,
+                                    const FitOptions& options) {
   if (options.threads < 1) {
     throw std::invalid_argument("threads is " + std::to_string(options.threads) +
                                 ", at least 1 is needed");

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/mesh/neighbours.h"
+#include "fitting/fitter.h"
 #include "fitting/iwls/options.h"
-#include "fitting/representation.h"
 #include "fitting/sparse/options.h"
 #include "fitting/spherical_harmonics/options.h"
 
@@ -14,7 +14,7 @@
 namespace sheen::fitting {
 
 /// Everything a representation may be asked to respect.
-struct RepresentationOptions {
+struct FitOptions {
   iwls::Options iwls;
   int threads = 1;  ///< >= 1
   spherical_harmonics::Options spherical_harmonics{};
@@ -26,8 +26,8 @@ std::vector<std::string> representation_names();
 
 /// An empty representation with one patch per vertex. Throws std::invalid_argument for an unknown
 /// name.
-std::unique_ptr<Representation> make_representation(const std::string& name,
-                                                    const core::VertexNeighbours& neighbours,
-                                                    const RepresentationOptions& options);
+std::unique_ptr<Fitter> make_fitter(const std::string& name,
+                                    const core::VertexNeighbours& neighbours,
+                                    const FitOptions& options);
 
 }  // namespace sheen::fitting

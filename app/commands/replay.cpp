@@ -29,23 +29,22 @@ namespace {
 
 /// What a replay builds from the same samples: the light field and, to compare with, mean colours.
 struct LightFields {
-  std::unique_ptr<fitting::Representation> fitted;
+  std::unique_ptr<fitting::Fitter> fitted;
   /// Null when nobody asks for mean colours, or `fitted` is the mean itself.
-  std::unique_ptr<fitting::Representation> mean;
+  std::unique_ptr<fitting::Fitter> mean;
   /// The same two where views may be taken back; else null.
   fitting::UndoableFitter* fitted_history = nullptr;
   fitting::UndoableFitter* mean_history = nullptr;
 
   LightFields(const ReplayOptions& options, const core::Mesh& mesh, int threads) {
     const auto neighbours = core::vertex_neighbours(mesh);
-    const fitting::RepresentationOptions fit_options{
+    const fitting::FitOptions fit_options{
         .iwls = options.iwls, .threads = threads, .sparse = options.sparse};
-    const auto make =
-        [&](const std::string& name,
-            fitting::UndoableFitter*& history) -> std::unique_ptr<fitting::Representation> {
-      if (!options.preview) return fitting::make_representation(name, neighbours, fit_options);
+    const auto make = [&](const std::string& name,
+                          fitting::UndoableFitter*& history) -> std::unique_ptr<fitting::Fitter> {
+      if (!options.preview) return fitting::make_fitter(name, neighbours, fit_options);
       auto undoable = std::make_unique<fitting::UndoableFitter>(
-          [=] { return fitting::make_representation(name, neighbours, fit_options); });
+          [=] { return fitting::make_fitter(name, neighbours, fit_options); });
       history = undoable.get();
       return undoable;
     };
@@ -234,12 +233,11 @@ std::function<bool(const core::SampleBatch&)> admission(const ReplayOptions& opt
   if (live != nullptr) return [live](const core::SampleBatch& batch) { return live->admit(batch); };
   if (!options.refuse_mismatches) return {};
   const auto patches =
-      model.with([](const fitting::Representation& r) { return r.light_field().patch_count(); });
+      model.with([](const fitting::Fitter& r) { return r.light_field().patch_count(); });
   const auto score = std::make_shared<fitting::guidance::CaptureScore>(patches);
   return [&model, score](const core::SampleBatch& batch) {
-    const auto verdict = model.with([&](const fitting::Representation& representation) {
-      return score->judge(batch, representation.light_field());
-    });
+    const auto verdict = model.with(
+        [&](const fitting::Fitter& fitter) { return score->judge(batch, fitter.light_field()); });
     if (verdict != fitting::guidance::FrameVerdict::fine) return false;
     score->note(batch, 0);
     return true;

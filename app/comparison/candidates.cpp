@@ -6,7 +6,7 @@
 namespace sheen::app {
 namespace {
 
-using Options = fitting::RepresentationOptions;
+using Options = fitting::FitOptions;
 using Construction = fitting::iwls::Construction;
 
 constexpr const char* kSimple = "Simple baselines";
@@ -83,12 +83,13 @@ std::vector<std::string> candidate_names() {
   return names;
 }
 
-std::unique_ptr<fitting::Representation> make_representation(
-    const Candidate& candidate, const core::VertexNeighbours& neighbours, int threads) {
+std::unique_ptr<fitting::Fitter> make_fitter(const Candidate& candidate,
+                                             const core::VertexNeighbours& neighbours,
+                                             int threads) {
   Options options;
   options.threads = threads;
   candidate.choose(options);
-  return fitting::make_representation(candidate.representation, neighbours, options);
+  return fitting::make_fitter(candidate.representation, neighbours, options);
 }
 
 }  // namespace sheen::app

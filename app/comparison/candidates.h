@@ -15,7 +15,7 @@ struct Candidate {
   const char* label;           ///< as people read it, e.g. "spherical harmonics 3"
   const char* family;          ///< candidates drawn in one colour, e.g. "Spherical harmonics"
   const char* representation;  ///< name in fitting's registry
-  void (*choose)(fitting::RepresentationOptions&);  ///< sets what makes this candidate itself
+  void (*choose)(fitting::FitOptions&);  ///< sets what makes this candidate itself
 };
 
 /// Every candidate whose representation is registered, from the simplest to the richest.
@@ -27,7 +27,7 @@ std::vector<Candidate> candidates_named(const std::vector<std::string>& names);
 std::vector<std::string> candidate_names();
 
 /// Empty, one patch per vertex. `threads` >= 1.
-std::unique_ptr<fitting::Representation> make_representation(
-    const Candidate& candidate, const core::VertexNeighbours& neighbours, int threads);
+std::unique_ptr<fitting::Fitter> make_fitter(const Candidate& candidate,
+                                             const core::VertexNeighbours& neighbours, int threads);
 
 }  // namespace sheen::app

@@ -35,13 +35,13 @@ class TimedRenderer final : public render::SurfaceRenderer {
 };
 
 /// Returns the CPU time of the whole fit, ms.
-double fit(fitting::Representation& representation, const std::vector<core::SampleBatch>& views) {
+double fit(fitting::Fitter& fitter, const std::vector<core::SampleBatch>& views) {
   const double begin_cpu_ms = core::process_cpu_ms();
   for (const core::SampleBatch& view : views) {
     throw_if_interrupted();
-    representation.absorb(view);
+    fitter.integrate(view);
   }
-  representation.finish();
+  fitter.finish();
   return core::process_cpu_ms() - begin_cpu_ms;
 }
 
@@ -60,13 +60,13 @@ Measurement measure_candidate(const Candidate& candidate, const Observations& ob
                               int threads) {
   // Fit.
   Measurement measurement;
-  const auto representation = make_representation(candidate, observations.neighbours, threads);
-  measurement.fit_ms = fit(*representation, observations.views);
+  const auto fitter = make_fitter(candidate, observations.neighbours, threads);
+  measurement.fit_ms = fit(*fitter, observations.views);
   measurement.fit_frame_ms = measurement.fit_ms / static_cast<double>(observations.views.size());
 
   // Weigh.
-  const fitting::LightField& light_field = representation->light_field();
-  measurement.samples = representation->statistics().samples;
+  const fitting::LightField& light_field = fitter->light_field();
+  measurement.samples = fitter->statistics().samples;
   measurement.patches = light_field.patch_count();
   measurement.coefficients = light_field.coefficient_count();
   measurement.model_bytes = bytes_of(observations.mesh, light_field, scratch);

@@ -14,14 +14,14 @@ namespace {
 
 /// Keeps every batch that passes through to a plain representation, so that the pipeline of
 /// `sheen replay` makes the observations here, too.
-class SampleRecorder final : public fitting::Representation {
+class SampleRecorder final : public fitting::Fitter {
  public:
   explicit SampleRecorder(const core::VertexNeighbours& neighbours)
-      : inner_(fitting::make_representation("mean", neighbours, {})) {}
+      : inner_(fitting::make_fitter("mean", neighbours, {})) {}
 
-  const fitting::ModelUpdate& absorb(const core::SampleBatch& batch) override {
+  const fitting::ModelUpdate& integrate(const core::SampleBatch& batch) override {
     batches_.push_back(batch);
-    return inner_->absorb(batch);
+    return inner_->integrate(batch);
   }
   const fitting::ModelUpdate& finish() override { return inner_->finish(); }
   [[nodiscard]] const fitting::LightField& light_field() const override {
@@ -32,7 +32,7 @@ class SampleRecorder final : public fitting::Representation {
   std::vector<core::SampleBatch> take_batches() { return std::move(batches_); }
 
  private:
-  std::unique_ptr<fitting::Representation> inner_;
+  std::unique_ptr<fitting::Fitter> inner_;
   std::vector<core::SampleBatch> batches_;
 };
 

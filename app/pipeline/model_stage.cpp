@@ -11,7 +11,7 @@ ModelStage::ModelStage(Parts parts)
     aligner_.emplace(parts_.mesh, parts_.photometric.pose_error_px);
 }
 
-void ModelStage::absorb(TrackedFrame& tracked) {
+void ModelStage::integrate(TrackedFrame& tracked) {
   auto posed = count(tracked);
   if (!posed) return;
   if (parts_.hold_out.contains(posed->index)) {
@@ -21,7 +21,7 @@ void ModelStage::absorb(TrackedFrame& tracked) {
     if (parts_.admit && !parts_.admit(batch_)) {
       ++statistics_.frames_refused;
     } else {
-      take_in(tracked.times);
+      integrate_samples(tracked.times);
     }
   }
   statistics_.posed.push_back(*posed);
@@ -62,14 +62,14 @@ void ModelStage::observe(const capture::Frame& frame, core::StageTimes& times, P
   for (std::size_t i = 0; i < counts.size(); ++i) statistics_.vertex_rejections[i] += counts[i];
 }
 
-void ModelStage::take_in(core::StageTimes& times) {
-  if (aligner_) aligner_->note_absorbed(batch_);
+void ModelStage::integrate_samples(core::StageTimes& times) {
+  if (aligner_) aligner_->note_integrated(batch_);
   if (parts_.baseline != nullptr) {
     const auto timing = times.measure("baseline");
-    parts_.baseline->absorb(batch_);
+    parts_.baseline->integrate(batch_);
   }
   const auto timing = times.measure("fit");
-  parts_.model.absorb(batch_);
+  parts_.model.integrate(batch_);
   ++statistics_.frames_fitted;
 }
 
@@ -86,8 +86,8 @@ PosedFrame ModelStage::refined(const capture::Frame& frame, PosedFrame posed) {
 }
 
 std::optional<core::Alignment> ModelStage::align(const capture::Frame& frame, PosedFrame& posed) {
-  const auto alignment = parts_.model.with([&](const fitting::Representation& representation) {
-    return aligner_->align(frame.image, view_, representation.light_field(), parts_.camera,
+  const auto alignment = parts_.model.with([&](const fitting::Fitter& fitter) {
+    return aligner_->align(frame.image, view_, fitter.light_field(), parts_.camera,
                            posed.camera_from_board * parts_.board_from_object);
   });
   if (alignment) {
@@ -97,9 +97,8 @@ std::optional<core::Alignment> ModelStage::align(const capture::Frame& frame, Po
 }
 
 void ModelStage::correct_exposure() {
-  const auto gain = parts_.model.with([&](const fitting::Representation& representation) {
-    return aligner_->gain(batch_, representation.light_field());
-  });
+  const auto gain = parts_.model.with(
+      [&](const fitting::Fitter& fitter) { return aligner_->gain(batch_, fitter.light_field()); });
   if (!gain) return;
   statistics_.gains.push_back(*gain);
   divide_by_gain(*gain, batch_);

@@ -28,7 +28,7 @@ class ModelStage {
     Eigen::Isometry3d board_from_object;
     core::SamplingLimits limits;
     SharedModel& model;
-    fitting::Representation* baseline;  ///< absorbs the same samples for comparison; may be null
+    fitting::Fitter* baseline;  ///< integrates the same samples for comparison; may be null
     HoldOut hold_out;
     PhotometricOptions photometric = {};
     int threads = 1;
@@ -40,7 +40,7 @@ class ModelStage {
   explicit ModelStage(Parts parts);
 
   /// Takes a frame into the model unless it has no pose or is held out.
-  void absorb(TrackedFrame& tracked);
+  void integrate(TrackedFrame& tracked);
 
   /// A frame's pose refined against the light field as it is now, or as it was when that cannot be
   /// said. Only with `refine_poses`; changes no statistics.
@@ -54,7 +54,7 @@ class ModelStage {
   void see(const Eigen::Isometry3d& camera_from_object);
   std::optional<core::Alignment> align(const capture::Frame& frame, PosedFrame& posed);
   void correct_exposure();
-  void take_in(core::StageTimes& times);
+  void integrate_samples(core::StageTimes& times);
 
   Parts parts_;
   core::SurfacePoints points_;

@@ -32,7 +32,7 @@ PhotometricAligner::PhotometricAligner(const core::Mesh& mesh, double pose_error
       seen_(mesh.positions.size(), 0),
       is_usable_(mesh.positions.size(), 0) {}
 
-void PhotometricAligner::note_absorbed(const core::SampleBatch& batch) {
+void PhotometricAligner::note_integrated(const core::SampleBatch& batch) {
   for (const std::uint32_t patch_idx : batch.patch) {
     if (seen_[patch_idx] < kMinSamples) ++seen_[patch_idx];
     is_usable_[patch_idx] = seen_[patch_idx] >= kMinSamples;

@@ -32,8 +32,8 @@ class PhotometricAligner {
   /// `pose_error_px` is the error expected of the poses to be refined, in the image.
   PhotometricAligner(const core::Mesh& mesh, double pose_error_px);
 
-  /// Counts the samples that the model has absorbed.
-  void note_absorbed(const core::SampleBatch& batch);
+  /// Counts the samples that the model has integrated.
+  void note_integrated(const core::SampleBatch& batch);
 
   /// Pose under which `image` agrees better with `model`; nothing when that cannot be said.
   /// `view` is the mesh seen from the start, occlusion included.
@@ -53,7 +53,7 @@ class PhotometricAligner {
   const core::Mesh& mesh_;
   double pose_error_px_;
   core::VertexNeighbours neighbours_;
-  std::vector<std::uint16_t> seen_;      ///< samples absorbed per patch
+  std::vector<std::uint16_t> seen_;      ///< samples integrated per patch
   std::vector<std::uint8_t> is_usable_;  ///< seen often enough to be compared with
   core::GradientImage image_;
   std::vector<std::uint32_t> selected_;

@@ -52,7 +52,7 @@ core::StageTimer fit_all(const Next& next, ModelStage& model,
   timer.start();
   while (auto tracked = next()) {
     throw_if_interrupted();
-    model.absorb(*tracked);
+    model.integrate(*tracked);
     timer.end_frame(tracked->times);
     on_frame(*tracked);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "fitting/representation.h"
+#include "fitting/fitter.h"
 
 #include <cstdint>
 #include <mutex>
@@ -13,35 +13,34 @@ namespace sheen::app {
 /// meanwhile. All members may be called from any thread.
 class SharedModel {
  public:
-  /// The representation is borrowed.
-  explicit SharedModel(fitting::Representation& representation)
-      : representation_(representation),
-        is_changed_(representation.light_field().patch_count(), 0) {}
+  /// The fitter is borrowed.
+  explicit SharedModel(fitting::Fitter& fitter)
+      : fitter_(fitter), is_changed_(fitter.light_field().patch_count(), 0) {}
 
-  /// Runs `work(representation)` while nobody else has it.
+  /// Runs `work(fitter)` while nobody else has it.
   template <typename Work>
   decltype(auto) with(const Work& work) {
     const std::lock_guard lock(mutex_);
-    return work(representation_);
+    return work(fitter_);
   }
 
-  /// Runs `work(representation, changes)` with what changed since such a look was last had, unless
+  /// Runs `work(fitter, changes)` with what changed since such a look was last had, unless
   /// somebody else has the model right now; returns whether it ran.
   template <typename Work>
   bool try_look(const Work& work) {
     const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (lock.owns_lock()) work(representation_, collect_changes());
+    if (lock.owns_lock()) work(fitter_, collect_changes());
     return lock.owns_lock();
   }
 
-  void absorb(const core::SampleBatch& batch) {
+  void integrate(const core::SampleBatch& batch) {
     const std::lock_guard lock(mutex_);
-    note(representation_.absorb(batch));
+    note(fitter_.integrate(batch));
   }
 
   void finish() {
     const std::lock_guard lock(mutex_);
-    note(representation_.finish());
+    note(fitter_.finish());
   }
 
  private:
@@ -51,7 +50,7 @@ class SharedModel {
   }
 
   std::mutex mutex_;
-  fitting::Representation& representation_;
+  fitting::Fitter& fitter_;
   std::vector<std::uint8_t> is_changed_;
 };
 

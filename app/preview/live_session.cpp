@@ -36,9 +36,9 @@ bool LiveSession::admit(const core::SampleBatch& batch) {
     const std::lock_guard lock(mutex_);
     if (parts_.is_camera && requests_.paused) return false;
   }
-  const auto verdict = parts_.model.with([&](const fitting::Representation& representation) {
+  const auto verdict = parts_.model.with([&](const fitting::Fitter& fitter) {
     const std::lock_guard lock(mutex_);
-    return score_.judge(batch, representation.light_field());
+    return score_.judge(batch, fitter.light_field());
   });
   const std::lock_guard lock(mutex_);
   const bool doubted = verdict != guidance::FrameVerdict::fine;
@@ -140,7 +140,7 @@ void LiveSession::undo(double seconds) {
 
   // Build everything anew without those views.
   guidance::CaptureScore score(parts_.mesh.positions.size());
-  parts_.model.with([&](const fitting::Representation&) {
+  parts_.model.with([&](const fitting::Fitter&) {
     parts_.history.undo(views,
                         [&](const core::SampleBatch& batch, const fitting::LightField& model) {
                           score.judge(batch, model);
@@ -165,9 +165,8 @@ void LiveSession::undo(double seconds) {
 void LiveSession::save() {
   std::string told;
   try {
-    told = parts_.model.with([&](const fitting::Representation& representation) {
-      return parts_.save(representation.light_field());
-    });
+    told = parts_.model.with(
+        [&](const fitting::Fitter& fitter) { return parts_.save(fitter.light_field()); });
   } catch (const core::Error& error) {
     told = error.what();  // the capture goes on
   }
@@ -227,8 +226,8 @@ void LiveSession::take(PlannerAdvice advice) {
 
 bool LiveSession::try_look(const Look& look) {
   return parts_.model.try_look(
-      [&](const fitting::Representation& representation, const fitting::ModelUpdate& changes) {
-        look(representation.light_field(), changes, parts_.history.undos());
+      [&](const fitting::Fitter& fitter, const fitting::ModelUpdate& changes) {
+        look(fitter.light_field(), changes, parts_.history.undos());
       });
 }
 

@@ -29,7 +29,7 @@ struct LiveStatus {
   std::optional<Eigen::Isometry3d> camera_from_object;  ///< of that frame
 
   double coverage = 0;                  ///< [0, 1]
-  std::vector<float> psnr_db;           ///< prediction of every frame before it was absorbed
+  std::vector<float> psnr_db;           ///< prediction of every frame before it was integrated
   bool is_flat = false;                 ///< going on as before brings little
   std::optional<Eigen::Vector3d> hint;  ///< where to stand next, object frame, metres
 

@@ -3,8 +3,8 @@
 
 #include "app/preview/layer.h"
 #include "core/mesh/mesh.h"
+#include "fitting/fitter.h"
 #include "fitting/light_field.h"
-#include "fitting/representation.h"
 #include "render/preview/surface_layer.h"
 
 #include <Eigen/Geometry>

@@ -40,14 +40,14 @@ Eigen::Vector3f on_dome(float azimuth, float elevation) {
 /// A model under construction and what guidance knows of it.
 struct Walk {
   const WalkScene& scene;
-  std::unique_ptr<fitting::Representation> model;
+  std::unique_ptr<fitting::Fitter> model;
   guidance::CaptureScore score;
   std::uint64_t noise;
 
   Walk(const WalkScene& walked, std::uint64_t key)
       : scene(walked),
-        model(fitting::make_representation("sparse", core::vertex_neighbours(walked.mesh()),
-                                           {.iwls = {}, .threads = 1})),
+        model(fitting::make_fitter("sparse", core::vertex_neighbours(walked.mesh()),
+                                   {.iwls = {}, .threads = 1})),
         score(walked.mesh().positions.size()),
         noise(key) {}
 
@@ -55,7 +55,7 @@ struct Walk {
     const auto batch = scene.look(eye, noise = hash_of({noise}));
     score.judge(batch, model->light_field());
     score.note(batch, 0);
-    model->absorb(batch);
+    model->integrate(batch);
   }
 
   [[nodiscard]] double psnr_db(const std::vector<Eigen::Vector3f>& judges) const {

@@ -2,7 +2,7 @@
 // The fit of one view: running sums against the memory floor and against a refit from lists.
 #include "core/mesh/neighbours.h"
 #include "fitting/huge_pages.h"
-#include "fitting/iwls/iwls_representation.h"
+#include "fitting/iwls/iwls_fitter.h"
 #include "fitting/iwls/moment_rows.h"
 #include "fitting/iwls/quad_tree.h"
 #include "fitting/iwls/wendland.h"
@@ -74,7 +74,7 @@ const Walk& walk_of(std::size_t patch_count) {
   return *walk;
 }
 
-void absorb(benchmark::State& state, Construction construction, bool faithful) {
+void integrate(benchmark::State& state, Construction construction, bool faithful) {
   const auto patches = static_cast<std::size_t>(state.range(0));
   const Walk& walk = walk_of(patches);
   fitting::iwls::Options options;
@@ -82,13 +82,13 @@ void absorb(benchmark::State& state, Construction construction, bool faithful) {
   options.centers = static_cast<int>(state.range(1));
   options.faithful = faithful;
   const core::VertexNeighbours isolated{std::vector<std::uint32_t>(patches + 1, 0), {}};
-  const auto representation = make_iwls_representation(isolated, options, 1);
-  for (std::size_t i = 0; i < kWarmViews; ++i) representation->absorb(walk.view(i));
+  const auto fitter = make_iwls_fitter(isolated, options, 1);
+  for (std::size_t i = 0; i < kWarmViews; ++i) fitter->integrate(walk.view(i));
   std::size_t view = 0;
   std::size_t samples = 0;
   for (auto _ : state) {
     samples += walk.view(view).size();
-    benchmark::DoNotOptimize(representation->absorb(walk.view(view++)));
+    benchmark::DoNotOptimize(fitter->integrate(walk.view(view++)));
   }
   state.SetItemsProcessed(static_cast<std::int64_t>(samples));
 }
@@ -216,7 +216,7 @@ void naive_refit(benchmark::State& state) {
 
 constexpr benchmark::TimeUnit kUnit = benchmark::kMillisecond;
 
-BENCHMARK_CAPTURE(absorb, quadtree, Construction::quadtree, false)
+BENCHMARK_CAPTURE(integrate, quadtree, Construction::quadtree, false)
     ->ArgsProduct({{4000, 31000, 150000}, {16, 64}})
     ->ArgNames({"patches", "centers"})
     ->Unit(kUnit);
@@ -224,15 +224,15 @@ BENCHMARK(memory_floor)
     ->ArgsProduct({{4000, 31000, 150000}, {16, 64}})
     ->ArgNames({"patches", "centers"})
     ->Unit(kUnit);
-BENCHMARK_CAPTURE(absorb, batch, Construction::batch, false)
+BENCHMARK_CAPTURE(integrate, batch, Construction::batch, false)
     ->Args({31000, 16})
     ->ArgNames({"patches", "centers"})
     ->Unit(kUnit);
-BENCHMARK_CAPTURE(absorb, quadtree_faithful, Construction::quadtree, true)
+BENCHMARK_CAPTURE(integrate, quadtree_faithful, Construction::quadtree, true)
     ->Args({31000, 16})
     ->ArgNames({"patches", "centers"})
     ->Unit(kUnit);
-BENCHMARK_CAPTURE(absorb, adaptive_faithful, Construction::adaptive, true)
+BENCHMARK_CAPTURE(integrate, adaptive_faithful, Construction::adaptive, true)
     ->Args({31000, 16})
     ->ArgNames({"patches", "centers"})
     ->Unit(kUnit);

@@ -135,7 +135,7 @@ void plain_vertex_colours(benchmark::State& state) {
   }
 }
 
-// How a light field is drawn: by the shader of its representation, or evaluated on the CPU.
+// How a light field is drawn: by the shader of its fitter, or evaluated on the CPU.
 void draw(benchmark::State& state, const fitting::LightField& model, bool on_cpu = false) {
   const bench::Walk& walk = bench::walk_round(kVertices);
   const core::CameraModel eye = camera();

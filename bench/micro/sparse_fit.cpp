@@ -20,12 +20,12 @@ constexpr std::size_t kPatches = 31000;
 // Part of the patches that a view sees, as measured on a closed mesh.
 constexpr std::size_t kSeen = kPatches * 28 / 100;
 
-std::unique_ptr<Representation> make_sparse(int threads) {
+std::unique_ptr<Fitter> make_sparse(int threads) {
   core::VertexNeighbours nobody;
   nobody.offsets.assign(kPatches + 1, 0);
-  RepresentationOptions options;
+  FitOptions options;
   options.threads = threads;
-  return make_representation("sparse", nobody, options);
+  return make_fitter("sparse", nobody, options);
 }
 
 // A grey patch, every third with a highlight about 20 degrees wide at a place of its own.
@@ -77,12 +77,12 @@ class Walk {
 constexpr double kPerNanosecond = 1e-9;
 
 // Goes on along a walk; the making of the samples is not measured.
-void absorb(benchmark::State& state, Representation& representation, Walk& walk) {
+void integrate(benchmark::State& state, Fitter& fitter, Walk& walk) {
   for (auto _ : state) {
     state.PauseTiming();
     const core::SampleBatch& batch = walk.next();
     state.ResumeTiming();
-    representation.absorb(batch);
+    fitter.integrate(batch);
   }
   state.counters["ns/sample"] =
       benchmark::Counter(static_cast<double>(state.iterations()) * kSeen * kPerNanosecond,
@@ -90,32 +90,32 @@ void absorb(benchmark::State& state, Representation& representation, Walk& walk)
 }
 
 // 20 degrees a second at 30 frames a second, after a walk all round.
-void absorb_steady(benchmark::State& state) {
-  const auto representation = make_sparse(1);
+void integrate_steady(benchmark::State& state) {
+  const auto fitter = make_sparse(1);
   Walk walk(0.67f);
-  for (int view = 0; view < 600; ++view) representation->absorb(walk.next());
-  absorb(state, *representation, walk);
+  for (int view = 0; view < 600; ++view) fitter->integrate(walk.next());
+  integrate(state, *fitter, walk);
 }
-BENCHMARK(absorb_steady)->Unit(benchmark::kMillisecond)->Iterations(200);
+BENCHMARK(integrate_steady)->Unit(benchmark::kMillisecond)->Iterations(200);
 
 // The first time round, a view every 6 degrees: hardly anything merges, every patch grows.
-void absorb_growing(benchmark::State& state) {
-  const auto representation = make_sparse(1);
+void integrate_growing(benchmark::State& state) {
+  const auto fitter = make_sparse(1);
   Walk walk(6.0f);
-  absorb(state, *representation, walk);
+  integrate(state, *fitter, walk);
 }
-BENCHMARK(absorb_growing)->Unit(benchmark::kMillisecond)->Iterations(120);
+BENCHMARK(integrate_growing)->Unit(benchmark::kMillisecond)->Iterations(120);
 
-std::unique_ptr<Representation> taught(int views) {
-  auto representation = make_sparse(1);
+std::unique_ptr<Fitter> taught(int views) {
+  auto fitter = make_sparse(1);
   Walk walk(2.0f);
-  for (int view = 0; view < views; ++view) representation->absorb(walk.next());
-  return representation;
+  for (int view = 0; view < views; ++view) fitter->integrate(walk.next());
+  return fitter;
 }
 
 void finish(benchmark::State& state) {
-  const auto representation = taught(360);
-  for (auto _ : state) representation->finish();
+  const auto fitter = taught(360);
+  for (auto _ : state) fitter->finish();
   state.counters["us/patch"] =
       benchmark::Counter(static_cast<double>(state.iterations()) * kPatches * 1e-6,
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
@@ -124,11 +124,11 @@ BENCHMARK(finish)->Unit(benchmark::kMillisecond)->Iterations(1);
 
 // What a heat map asks for: once for every patch.
 void predicted_error(benchmark::State& state) {
-  const auto representation = taught(360);
+  const auto fitter = taught(360);
   for (auto _ : state) {
     float sum = 0;
     for (std::size_t patch = 0; patch < kPatches; ++patch) {
-      sum += representation->predicted_error(patch, {0.3f, -0.2f}).value_or(0.0f);
+      sum += fitter->predicted_error(patch, {0.3f, -0.2f}).value_or(0.0f);
     }
     benchmark::DoNotOptimize(sum);
   }

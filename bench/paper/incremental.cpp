@@ -34,17 +34,17 @@ StudySet training_as_test(StudySet set) {
 Trace trace(const Method& method, const StudySet& set, const std::vector<std::size_t>& stops) {
   const StudySet full = training_as_test(set);
   const std::vector<core::SampleBatch> batches = set.batches();
-  const auto representation = method.make(set.points.size());
+  const auto fitter = method.make(set.points.size());
   Trace result;
   std::size_t next = 0;
   for (std::size_t frame = 0; frame < batches.size() && next < stops.size(); ++frame) {
-    representation->absorb(batches[frame]);
+    fitter->integrate(batches[frame]);
     if (frame + 1 != stops[next]) continue;
-    representation->finish();
+    fitter->finish();
     Measurement measured;
-    measured.points = point_errors(representation->light_field(), set);
+    measured.points = point_errors(fitter->light_field(), set);
     result.held_out.push_back(measured.mean_rms());
-    measured.points = point_errors(representation->light_field(), full);
+    measured.points = point_errors(fitter->light_field(), full);
     result.full_set.push_back(measured.mean_rms());
     ++next;
   }
@@ -103,14 +103,14 @@ class OneLeafTree {
 // Fits so far after each number of views, per patch and view; `finish` is never called.
 std::vector<double> fits_per_view(const Method& method, const StudySet& set,
                                   const std::vector<std::size_t>& stops) {
-  const auto representation = method.make(set.points.size());
+  const auto fitter = method.make(set.points.size());
   std::vector<double> result;
-  std::size_t absorbed = 0;
+  std::size_t integrated = 0;
   for (const core::SampleBatch& batch : set.batches()) {
-    representation->absorb(batch);
-    ++absorbed;
-    if (std::find(stops.begin(), stops.end(), absorbed) == stops.end()) continue;
-    const fitting::FitStatistics statistics = representation->statistics();
+    fitter->integrate(batch);
+    ++integrated;
+    if (std::find(stops.begin(), stops.end(), integrated) == stops.end()) continue;
+    const fitting::FitStatistics statistics = fitter->statistics();
     result.push_back(static_cast<double>(statistics.fits) /
                      static_cast<double>(statistics.patch_views));
   }

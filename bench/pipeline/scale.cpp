@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How memory and time of a fit grow: samples of a glossy object go straight into a representation,
+// How memory and time of a fit grow: samples of a glossy object go straight into a fitter,
 // view after view of a walk at the pace of the synthetic sessions, without images. One line of
 // CSV each time the number of views has doubled.
 #include "bench/micro/walk.h"
@@ -105,11 +105,10 @@ void run(const ScaleOptions& options) {
   const core::SurfacePoints points = core::surface_points(walk.mesh);
   const auto visibility = core::make_raster_visibility(walk.mesh, options.threads);
   const GlossyObject object(walk.mesh);
-  fitting::RepresentationOptions fit_options;
+  fitting::FitOptions fit_options;
   fit_options.threads = options.threads;
-  const auto representation =
-      fitting::make_representation(options.fitter == "quadtree" ? "iwls" : options.fitter,
-                                   core::vertex_neighbours(walk.mesh), fit_options);
+  const auto fitter = fitting::make_fitter(options.fitter == "quadtree" ? "iwls" : options.fitter,
+                                           core::vertex_neighbours(walk.mesh), fit_options);
   const auto path = path_round(walk.mesh, options.views);
 
   fmt::print("fitter,vertices,views,peak_rss_mb,visibility_ms,fit_ms\n");
@@ -126,7 +125,7 @@ void run(const ScaleOptions& options) {
     const double seen_ms = core::own_cpu_ms();
     object.photograph(view, core::eye_in_object(pose), static_cast<std::uint32_t>(v), batch);
     const double photographed_ms = core::own_cpu_ms();
-    representation->absorb(batch);
+    fitter->integrate(batch);
     line.visibility_ms += seen_ms - begin_ms;
     line.fit_ms += core::own_cpu_ms() - photographed_ms;
     ++line.views;

@@ -44,9 +44,9 @@ class Capture {
         session_(session),
         threads_(options.threads),
         history_([neighbours = core::vertex_neighbours(mesh), threads = options.threads] {
-          fitting::RepresentationOptions fit;
+          fitting::FitOptions fit;
           fit.threads = threads;
-          return fitting::make_representation("sparse", neighbours, fit);
+          return fitting::make_fitter("sparse", neighbours, fit);
         }),
         model_(history_),
         live_({.model = model_,

@@ -21,14 +21,14 @@ struct Predictions {
   std::vector<double> actual;
 };
 
-Predictions predictions(const fitting::Representation& representation, const StudySet& set) {
+Predictions predictions(const fitting::Fitter& fitter, const StudySet& set) {
   Predictions result;
   for (std::size_t patch = 0; patch < set.points.size(); ++patch) {
     for (const TestSample& test : set.points[patch].test) {
-      const auto predicted = representation.predicted_error(patch, test.uv);
+      const auto predicted = fitter.predicted_error(patch, test.uv);
       if (!predicted) continue;
       result.predicted.push_back(static_cast<double>(*predicted));
-      result.actual.push_back(point_error(representation.light_field(), patch, {&test, 1}).rms);
+      result.actual.push_back(point_error(fitter.light_field(), patch, {&test, 1}).rms);
     }
   }
   return result;
@@ -63,10 +63,10 @@ Table confidence_study(const StabilityOptions& options, const Progress& progress
   for (const Method& method : options.methods) {
     std::vector<std::string> line{method.name};
     for (const StudySet& set : sets) {
-      const auto representation = method.make(set.points.size());
-      for (const core::SampleBatch& batch : set.batches()) representation->absorb(batch);
-      representation->finish();
-      const Predictions pairs = predictions(*representation, set);
+      const auto fitter = method.make(set.points.size());
+      for (const core::SampleBatch& batch : set.batches()) fitter->integrate(batch);
+      fitter->finish();
+      const Predictions pairs = predictions(*fitter, set);
       if (pairs.predicted.empty()) break;
       line.push_back(quality_cell(pairs));
     }

@@ -97,14 +97,14 @@ double Measurement::pooled_psnr_db(const StudySet& set) const {
 
 Measurement measure(const Method& method, const StudySet& set) {
   const std::vector<core::SampleBatch> batches = set.batches();
-  const auto representation = method.make(set.points.size());
+  const auto fitter = method.make(set.points.size());
   // Fit.
   const double start_us = thread_cpu_us();
-  for (const core::SampleBatch& batch : batches) representation->absorb(batch);
-  representation->finish();
+  for (const core::SampleBatch& batch : batches) fitter->integrate(batch);
+  fitter->finish();
   const double elapsed_us = thread_cpu_us() - start_us;
   // Compare.
-  const fitting::LightField& light_field = representation->light_field();
+  const fitting::LightField& light_field = fitter->light_field();
   Measurement result;
   result.points = point_errors(light_field, set);
   result.coefficients_per_point =

@@ -22,7 +22,7 @@ struct PointError {
 struct Measurement {
   std::vector<PointError> points;
   double coefficients_per_point = 0;
-  double fit_us = 0;  ///< CPU time of absorb and finish per sample, microseconds
+  double fit_us = 0;  ///< CPU time of integrate and finish per sample, microseconds
 
   [[nodiscard]] double mean_rms() const;    ///< over points
   [[nodiscard]] double rms_spread() const;  ///< standard deviation over points
@@ -37,7 +37,7 @@ PointError point_error(const fitting::LightField& light_field, std::size_t patch
 /// Errors of all points of a set.
 std::vector<PointError> point_errors(const fitting::LightField& light_field, const StudySet& set);
 
-/// Absorbs all views, one frame after the other, finishes and compares.
+/// Integrates all views, one frame after the other, finishes and compares.
 Measurement measure(const Method& method, const StudySet& set);
 
 }  // namespace sheen::bench

@@ -10,15 +10,15 @@ namespace sheen::bench {
 
 using fitting::iwls::Construction;
 
-std::unique_ptr<fitting::Representation> Method::make(std::size_t patch_count) const {
+std::unique_ptr<fitting::Fitter> Method::make(std::size_t patch_count) const {
   core::VertexNeighbours neighbours;
   neighbours.offsets.assign(patch_count + 1, 0);
-  return fitting::make_representation(representation, neighbours, options);
+  return fitting::make_fitter(representation, neighbours, options);
 }
 
 Method iwls_method(Construction construction, bool faithful, int centers, int terms,
                    fitting::iwls::Layout layout) {
-  fitting::RepresentationOptions options;
+  fitting::FitOptions options;
   options.iwls.construction = construction;
   options.iwls.faithful = faithful;
   options.iwls.centers = centers;
@@ -30,7 +30,7 @@ Method iwls_method(Construction construction, bool faithful, int centers, int te
 }
 
 Method harmonics_method(int degree) {
-  fitting::RepresentationOptions options;
+  fitting::FitOptions options;
   options.spherical_harmonics.degree = degree;
   return {fmt::format("sh {}", degree), "sh", options};
 }

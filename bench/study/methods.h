@@ -13,10 +13,10 @@ namespace sheen::bench {
 struct Method {
   std::string name;
   std::string representation;
-  fitting::RepresentationOptions options;
+  fitting::FitOptions options;
 
   /// For independent points: no patch has neighbours.
-  [[nodiscard]] std::unique_ptr<fitting::Representation> make(std::size_t patch_count) const;
+  [[nodiscard]] std::unique_ptr<fitting::Fitter> make(std::size_t patch_count) const;
 };
 
 /// IWLS in one construction; `faithful` follows the paper to the letter.

@@ -59,7 +59,7 @@ std::optional<PlyProperty> property_of(const std::vector<std::string>& words) {
 }
 
 /// Takes one line into the header; false when it makes no sense.
-bool absorb(const std::vector<std::string>& words, PlyHeader& header, bool& has_format) {
+bool integrate(const std::vector<std::string>& words, PlyHeader& header, bool& has_format) {
   if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return true;
   if (words[0] == "format" && words.size() == 3) {
     const auto format = format_named(words[1]);
@@ -98,7 +98,8 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::filesystem::path& 
     const std::vector<std::string> words = words_of(bytes.substr(begin, end - begin));
     begin = end + 1;
     if (words.size() == 1 && words[0] == "end_header") break;
-    if (!absorb(words, header, has_format)) throw broken("has a header line that makes no sense");
+    if (!integrate(words, header, has_format))
+      throw broken("has a header line that makes no sense");
   }
   if (!has_format) throw broken("does not name its format");
   header.size_bytes = begin;

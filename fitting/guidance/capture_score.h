@@ -15,13 +15,13 @@ struct CaptureScore {
 
   explicit CaptureScore(std::size_t patch_count) : need(patch_count) {}
 
-  /// Judges a view before it is absorbed.
+  /// Judges a view before it is integrated.
   FrameVerdict judge(const core::SampleBatch& batch, const LightField& model) {
     score_ = need.score(batch, model);
     return gate.judge(score_);
   }
 
-  /// The view judged last is about to be absorbed; `coverage` as known, [0, 1].
+  /// The view judged last is about to be integrated; `coverage` as known, [0, 1].
   void note(const core::SampleBatch& batch, double coverage) {
     need.note(batch);
     curve.add(score_, coverage);

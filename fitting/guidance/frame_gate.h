@@ -8,8 +8,8 @@
 
 namespace sheen::fitting::guidance {
 
-/// What is to be thought of a frame before it is absorbed. New directions alone are never a fault:
-/// only directions seen before are held against a frame.
+/// What is to be thought of a frame before it is integrated. New directions alone are never a
+/// fault: only directions seen before are held against a frame.
 enum class FrameVerdict {
   fine,
   exposure_step,  ///< brighter or darker than what was seen, and agrees once that is taken out

@@ -7,11 +7,11 @@
 
 namespace sheen::fitting::guidance {
 
-/// How well frames were predicted before they were absorbed, and how much of the object had been
+/// How well frames were predicted before they were integrated, and how much of the object had been
 /// seen: the live measure of quality, and the sign to stop.
 class QualityCurve {
  public:
-  /// A frame was absorbed; `coverage` in [0, 1] after it.
+  /// A frame was integrated; `coverage` in [0, 1] after it.
   void add(const FrameScore& score, double coverage);
 
   /// PSNR of every frame's prediction, dB, smoothed over a second or so.

@@ -40,7 +40,7 @@ struct PatchKnowledge {
   std::uint16_t seen_direction_count = 0;
 };
 
-/// Keeps score of how well views are predicted before they are absorbed, and from where patches
+/// Keeps score of how well views are predicted before they are integrated, and from where patches
 /// have been seen. Two answers that are never mixed: where views are missing, and where the model
 /// fails in directions that it has seen (too simple, or misregistered). Independent of the
 /// representation; not thread-safe.
@@ -48,10 +48,10 @@ class ViewUtility {
  public:
   explicit ViewUtility(std::size_t patch_count) : patches_(patch_count) {}
 
-  /// Compares a batch with the model, before it is absorbed. Nothing is learnt yet.
+  /// Compares a batch with the model, before it is integrated. Nothing is learnt yet.
   FrameScore score(const core::SampleBatch& batch, const LightField& model);
 
-  /// Learns from the batch that was scored last, which the model is about to absorb.
+  /// Learns from the batch that was scored last, which the model is about to integrate.
   void note(const core::SampleBatch& batch);
 
   [[nodiscard]] const std::vector<PatchKnowledge>& patches() const { return patches_; }

@@ -21,8 +21,8 @@ class Adaptive {
  public:
   Adaptive(FitSettings settings, std::size_t patch_count);
 
-  FitOutcome absorb(std::size_t patch_idx, const Sample& sample, const Rgb& mean,
-                    LightFieldModel& model);
+  FitOutcome integrate(std::size_t patch_idx, const Sample& sample, const Rgb& mean,
+                       LightFieldModel& model);
   FitOutcome solve(std::size_t patch_idx, const Rgb& mean, LightFieldModel& model) const;
 
   static constexpr bool kSolvesAtOnce = true;
@@ -96,8 +96,8 @@ void Adaptive<kTerms>::refit(std::size_t patch_idx, std::size_t center_idx, cons
 }
 
 template <std::size_t kTerms>
-FitOutcome Adaptive<kTerms>::absorb(std::size_t patch_idx, const Sample& sample, const Rgb& mean,
-                                    LightFieldModel& model) {
+FitOutcome Adaptive<kTerms>::integrate(std::size_t patch_idx, const Sample& sample, const Rgb& mean,
+                                       LightFieldModel& model) {
   const std::size_t centers = settings_.layout.centers.size();
   NormalEquations<kTerms>* sums = sums_.data() + patch_idx * centers * radii_.size();
   FitOutcome outcome;

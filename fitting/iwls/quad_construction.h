@@ -40,12 +40,12 @@ class QuadConstruction {
     }
   }
 
-  FitOutcome absorb(std::size_t patch_idx, const Sample& sample, const Rgb& mean,
-                    LightFieldModel& model) {
+  FitOutcome integrate(std::size_t patch_idx, const Sample& sample, const Rgb& mean,
+                       LightFieldModel& model) {
     const QuadPatch<Real> patch = patch_of(patch_idx, model);
     const QuadSample at{sample.u, sample.v, {sample.rgb[0], sample.rgb[1], sample.rgb[2]}};
     if constexpr (kIncremental) {
-      return kernels_.absorb(fit_, patch, at, mean.data());
+      return kernels_.integrate(fit_, patch, at, mean.data());
     } else {
       kernels_.gather(fit_, patch, at);
       return {};
@@ -56,7 +56,7 @@ class QuadConstruction {
     return kernels_.solve(fit_, patch_of(patch_idx, model), mean.data());
   }
 
-  /// Asks for the memory that `absorb` will touch.
+  /// Asks for the memory that `integrate` will touch.
   void prefetch(std::size_t patch_idx, double u, double v, LightFieldModel& model) {
     kernels_.prefetch(fit_, patch_of(patch_idx, model), u, v);
   }

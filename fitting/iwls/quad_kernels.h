@@ -46,11 +46,11 @@ struct QuadKernels {
   /// Adds a sample to all nodes whose support holds it.
   void (*gather)(const QuadFit<Real>&, const QuadPatch<Real>&, const QuadSample&);
   /// The same, then fits the leaves it concerns. `prior` is the mean colour of the patch.
-  FitOutcome (*absorb)(const QuadFit<Real>&, const QuadPatch<Real>&, const QuadSample&,
-                       const double* prior);
+  FitOutcome (*integrate)(const QuadFit<Real>&, const QuadPatch<Real>&, const QuadSample&,
+                          const double* prior);
   /// Fits all leaves.
   FitOutcome (*solve)(const QuadFit<Real>&, const QuadPatch<Real>&, const double* prior);
-  /// Asks for the memory that `absorb` will touch.
+  /// Asks for the memory that `integrate` will touch.
   void (*prefetch)(const QuadFit<Real>&, const QuadPatch<Real>&, double u, double v);
 };
 

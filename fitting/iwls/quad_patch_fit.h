@@ -319,8 +319,8 @@ void gather(const QuadFit<Real>& fit, const QuadPatch<Real>& patch, const QuadSa
 }
 
 template <typename Real, std::size_t kTerms>
-FitOutcome absorb(const QuadFit<Real>& fit, const QuadPatch<Real>& patch, const QuadSample& sample,
-                  const double* prior) {
+FitOutcome integrate(const QuadFit<Real>& fit, const QuadPatch<Real>& patch,
+                     const QuadSample& sample, const double* prior) {
   QuadPatchFit<Real, kTerms> one(fit, patch);
   one.gather(sample);
   return one.refit(prior, false);
@@ -338,7 +338,8 @@ void prefetch(const QuadFit<Real>& fit, const QuadPatch<Real>& patch, double u, 
 
 template <typename Real, std::size_t kTerms>
 QuadKernels<Real> kernels_of_terms() {
-  return {gather<Real, kTerms>, absorb<Real, kTerms>, solve<Real, kTerms>, prefetch<Real, kTerms>};
+  return {gather<Real, kTerms>, integrate<Real, kTerms>, solve<Real, kTerms>,
+          prefetch<Real, kTerms>};
 }
 
 inline EvaluateKernels evaluate_kernels() {

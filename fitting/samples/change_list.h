@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "fitting/representation.h"
+#include "fitting/fitter.h"
 
 #include <algorithm>
 #include <cstddef>

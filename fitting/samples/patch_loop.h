@@ -4,7 +4,7 @@
 #include "core/concurrency/parallel_for.h"
 #include "core/mesh/neighbours.h"
 #include "core/samples/sample_batch.h"
-#include "fitting/representation.h"
+#include "fitting/fitter.h"
 #include "fitting/samples/change_list.h"
 #include "fitting/samples/fit_outcome.h"
 #include "fitting/samples/sample.h"
@@ -33,18 +33,18 @@ class PatchLoop {
 
   [[nodiscard]] const FitStatistics& statistics() const { return statistics_; }
 
-  /// Calls `absorb_one(patch_idx, sample)` for every usable sample of the batch; it returns a
+  /// Calls `integrate_one(patch_idx, sample)` for every usable sample of the batch; it returns a
   /// FitOutcome.
   template <typename AbsorbOne>
-  const ModelUpdate& absorb(const core::SampleBatch& batch, const AbsorbOne& absorb_one) {
-    return absorb(batch, absorb_one, [](std::size_t /*idx*/) {});
+  const ModelUpdate& integrate(const core::SampleBatch& batch, const AbsorbOne& integrate_one) {
+    return integrate(batch, integrate_one, [](std::size_t /*idx*/) {});
   }
 
   /// The same; `announce(idx)` is called a few samples ahead with the index of one to come, so that
   /// its memory can be fetched meanwhile.
   template <typename AbsorbOne, typename Announce>
-  const ModelUpdate& absorb(const core::SampleBatch& batch, const AbsorbOne& absorb_one,
-                            const Announce& announce) {
+  const ModelUpdate& integrate(const core::SampleBatch& batch, const AbsorbOne& integrate_one,
+                               const Announce& announce) {
     constexpr std::size_t ahead = 3;
     changes_.reset(batch.size());
     // Patches are independent and appear once: any split of the batch gives the same result.
@@ -54,7 +54,7 @@ class PatchLoop {
       if (i + ahead < batch.size()) announce(i + ahead);
       const auto sample = usable_sample(batch, i);
       if (!sample) return;
-      const FitOutcome outcome = absorb_one(batch.patch[i], *sample);
+      const FitOutcome outcome = integrate_one(batch.patch[i], *sample);
       changes_.mark(i, outcome.changed);
       statistics.samples += 1;
       statistics.patch_views += 1;

@@ -12,7 +12,7 @@ namespace sheen::fitting {
 UndoableFitter::UndoableFitter(Factory make)
     : make_(std::move(make)), inner_(make_()), log_(std::in_place) {}
 
-const ModelUpdate& UndoableFitter::absorb(const core::SampleBatch& batch) {
+const ModelUpdate& UndoableFitter::integrate(const core::SampleBatch& batch) {
   if (log_) {
     try {
       log_->append(batch);
@@ -20,7 +20,7 @@ const ModelUpdate& UndoableFitter::absorb(const core::SampleBatch& batch) {
       log_.reset();  // a full disk must not end the fit
     }
   }
-  return inner_->absorb(batch);
+  return inner_->integrate(batch);
 }
 
 void UndoableFitter::undo(std::size_t views, const BeforeView& before_view) {
@@ -32,7 +32,7 @@ void UndoableFitter::undo(std::size_t views, const BeforeView& before_view) {
   for (std::size_t i = 0; i < log_->size(); ++i) {
     log_->read(i, batch);
     before_view(batch, inner_->light_field());
-    inner_->absorb(batch);
+    inner_->integrate(batch);
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "fitting/representation.h"
+#include "fitting/fitter.h"
 #include "fitting/undo/sample_log.h"
 
 #include <functional>
@@ -14,16 +14,16 @@ namespace sheen::fitting {
 /// forget, builds itself anew from those that stay. So undo is as right as the fit itself, whatever
 /// the representation, and takes as long as the fit of what stays. Where there is no room for the
 /// batches the fit goes on and only forgetting is over.
-class UndoableFitter final : public Representation {
+class UndoableFitter final : public Fitter {
  public:
-  using Factory = std::function<std::unique_ptr<Representation>()>;
-  /// Gets a batch and the light field just before it is absorbed.
+  using Factory = std::function<std::unique_ptr<Fitter>()>;
+  /// Gets a batch and the light field just before it is integrated.
   using BeforeView = std::function<void(const core::SampleBatch&, const LightField&)>;
 
   /// `make` gives an empty representation, the same every time.
   explicit UndoableFitter(Factory make);
 
-  const ModelUpdate& absorb(const core::SampleBatch& batch) override;
+  const ModelUpdate& integrate(const core::SampleBatch& batch) override;
   const ModelUpdate& finish() override { return inner_->finish(); }
   /// Another object after `undo`.
   [[nodiscard]] const LightField& light_field() const override { return inner_->light_field(); }
@@ -46,7 +46,7 @@ class UndoableFitter final : public Representation {
 
  private:
   Factory make_;
-  std::unique_ptr<Representation> inner_;
+  std::unique_ptr<Fitter> inner_;
   std::optional<SampleLog> log_;
   std::size_t undos_ = 0;
 };

@@ -3,8 +3,8 @@
 
 #include "core/geometry/camera.h"
 #include "core/mesh/mesh.h"
+#include "fitting/fitter.h"
 #include "fitting/light_field.h"
-#include "fitting/representation.h"
 #include "render/context/context.h"
 
 #include <Eigen/Geometry>

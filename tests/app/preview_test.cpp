@@ -189,7 +189,7 @@ class LivePipeline {
       : session_(capture::open_session(tests::sample_session())),
         mesh_(read_object_mesh(session_.mesh)),
         history_([neighbours = core::vertex_neighbours(mesh_)] {
-          return fitting::make_representation("sh", neighbours, {.iwls = {}, .threads = 1});
+          return fitting::make_fitter("sh", neighbours, {.iwls = {}, .threads = 1});
         }),
         model_(history_),
         live_(LiveSession::Parts{.model = model_,

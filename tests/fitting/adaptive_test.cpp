@@ -45,7 +45,7 @@ TEST_P(AdaptiveLists, RunningSumsEqualThem) {
   // Feed both, compare after every view.
   for (const auto& x : fitting::testing::scattered(150, 41)) {
     const Sample sample{x.x(), x.y(), {x.x() * x.y(), 0.5 + 0.2 * x.x(), x.y() * x.y()}};
-    adaptive.absorb(0, sample, Rgb{}, model);
+    adaptive.integrate(0, sample, Rgb{}, model);
     for (std::size_t j = 0; j < listed.size(); ++j) {
       listed[j].take(sample, adaptive.radii());
       ASSERT_EQ(adaptive.radius_idx(0, j), listed[j].radius_idx);

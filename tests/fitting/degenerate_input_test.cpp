@@ -82,13 +82,13 @@ TEST(DegenerateInput, NeverMakesAModelThatIsNotFinite) {
   for (const auto& [name, directions] : hard_cases()) {
     for (const bool faithful : {false, true}) {
       testing::for_all_options(faithful ? 3 : 0, faithful, [&](const iwls::Options& options) {
-        const auto representation = make_iwls(options);
+        const auto fitter = make_iwls(options);
         for (const auto& x : directions) {
-          representation->absorb(testing::one_sample(0, x, steep(x.x(), x.y())));
+          fitter->integrate(testing::one_sample(0, x, steep(x.x(), x.y())));
         }
-        range_of_model(representation->light_field());
-        representation->finish();
-        range_of_model(representation->light_field());
+        range_of_model(fitter->light_field());
+        fitter->finish();
+        range_of_model(fitter->light_field());
       });
     }
   }
@@ -105,9 +105,9 @@ TEST(DegenerateInput, RidgeFitsStayNearTheRangeOfTheSamples) {
     }
     for (const int terms : {0, 1, 3}) {
       testing::for_all_options(terms, false, [&](const iwls::Options& options) {
-        const auto representation = make_iwls(options);
-        testing::teach(*representation, directions, glossy);
-        const Range model = range_of_model(representation->light_field());
+        const auto fitter = make_iwls(options);
+        testing::teach(*fitter, directions, glossy);
+        const Range model = range_of_model(fitter->light_field());
         EXPECT_GT(model.lowest, samples.lowest - 0.1) << name << " " << text_of(options);
         EXPECT_LT(model.highest, samples.highest + 0.1) << name << " " << text_of(options);
       });
@@ -119,7 +119,7 @@ TEST(DegenerateInput, SamplesThatAreNotNumbersAreLeftOut) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   for (const char* name : {"iwls", "mean"}) {
-    const auto representation = make_representation(name, testing::isolated(2), {});
+    const auto fitter = make_fitter(name, testing::isolated(2), {});
     core::SampleBatch batch = testing::one_sample(0, {0.1, 0.2}, {0.4, 0.5, 0.6});
     testing::add_sample(batch, 1, {0.1, 0.2}, {0.4, 0.5, 0.6});
     for (auto* column : {&batch.u, &batch.v, &batch.r, &batch.g, &batch.b}) {
@@ -130,14 +130,14 @@ TEST(DegenerateInput, SamplesThatAreNotNumbersAreLeftOut) {
            : column == &batch.r ? &broken.r
            : column == &batch.g ? &broken.g
                                 : &broken.b))[1] = bad;
-        representation->absorb(broken);
+        fitter->integrate(broken);
       }
     }
     // 20 views reached patch 0, none patch 1.
-    EXPECT_EQ(representation->statistics().samples, 20u);
-    representation->finish();
-    EXPECT_EQ(representation->light_field().observed(), (std::vector<std::uint8_t>{1, 0}));
-    EXPECT_NEAR(representation->light_field().mean_colour(0).x(), 0.4f, 1e-3f);
+    EXPECT_EQ(fitter->statistics().samples, 20u);
+    fitter->finish();
+    EXPECT_EQ(fitter->light_field().observed(), (std::vector<std::uint8_t>{1, 0}));
+    EXPECT_NEAR(fitter->light_field().mean_colour(0).x(), 0.4f, 1e-3f);
   }
 }
 
@@ -156,13 +156,12 @@ TEST(DegenerateInput, LongRunsInOneSpotLoseNoPrecision) {
   for (const auto& [terms, faithful] :
        {std::pair{3, true}, std::pair{3, false}, std::pair{6, false}}) {
     for (const auto construction : testing::kConstructions) {
-      const auto representation =
-          make_iwls({construction, iwls::Layout::grid, 16, terms, faithful});
-      testing::teach(*representation, directions, truth);
+      const auto fitter = make_iwls({construction, iwls::Layout::grid, 16, terms, faithful});
+      testing::teach(*fitter, directions, truth);
       double squared = 0;
       for (std::size_t i = 0; i < 1000; ++i) {
         const auto& x = directions[i];
-        const auto value = testing::colour_of(representation->light_field(), 0, x.cast<float>());
+        const auto value = testing::colour_of(fitter->light_field(), 0, x.cast<float>());
         squared += (value.cast<double>() - truth(x.x(), x.y())).squaredNorm() / 3;
       }
       EXPECT_LT(std::sqrt(squared / 1000), 1e-3)

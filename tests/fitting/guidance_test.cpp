@@ -16,8 +16,8 @@ namespace {
 
 constexpr DirectionCells kAll = ~DirectionCells{0};
 
-std::unique_ptr<Representation> make(const std::string& name, std::size_t patches) {
-  return make_representation(name, testing::isolated(patches), {.iwls = {}, .threads = 1});
+std::unique_ptr<Fitter> make(const std::string& name, std::size_t patches) {
+  return make_fitter(name, testing::isolated(patches), {.iwls = {}, .threads = 1});
 }
 
 // All patches seen from one direction in one colour.
@@ -88,7 +88,7 @@ TEST(ViewUtility, PerfectPredictionsNeedNoViewsThere) {
     const auto batch = view(patches, {0.1, 0.1}, {0.5, 0.4, 0.3});
     need.score(batch, model->light_field());
     need.note(batch);
-    model->absorb(batch);
+    model->integrate(batch);
   }
   EXPECT_LE(need.seen_direction_error(0), 1.1e-4f);
   const DirectionCells seen = cell_bit(cell_of({0.1f, 0.1f}));
@@ -111,7 +111,7 @@ TEST(ViewUtility, TellsMissingViewsFromAModelThatIsTooSimple) {
     testing::add_sample(batch, 1, side, Eigen::Vector3d::Constant(i % 2 == 0 ? 0.2 : 0.8));
     need.score(batch, model->light_field());
     need.note(batch);
-    model->absorb(batch);
+    model->integrate(batch);
   }
   EXPECT_GT(missing_variance(need.patches()[0].seen, swept, need.unseen_direction_error(0)), 0);
   EXPECT_EQ(missing_variance(need.patches()[1].seen, swept, need.unseen_direction_error(1)), 0);
@@ -129,7 +129,7 @@ TEST(ViewUtility, IgnoresWhatIsNotANumber) {
     const FrameScore score = need.score(batch, model->light_field());
     EXPECT_TRUE(std::isfinite(score.squared_error) && std::isfinite(score.normalised_residual));
     need.note(batch);
-    model->absorb(batch);
+    model->integrate(batch);
   }
   EXPECT_EQ(need.patches()[0].samples, 2u);
   EXPECT_TRUE(std::isfinite(need.unseen_direction_error(0)) &&
@@ -147,7 +147,7 @@ TEST(Coverage, GoesFromNothingToAll) {
   EXPECT_DOUBLE_EQ(coverage(patches, reachable, area), 1);
 }
 
-// Judges and absorbs ordinary views until the gate has learnt what is usual.
+// Judges and integrates ordinary views until the gate has learnt what is usual.
 class Gate : public ::testing::Test {
  protected:
   static constexpr std::size_t kPatches = 400;
@@ -167,7 +167,7 @@ class Gate : public ::testing::Test {
     const FrameVerdict verdict = score_.judge(batch, model_->light_field());
     if (verdict == FrameVerdict::fine) {
       score_.note(batch, 0);
-      model_->absorb(batch);
+      model_->integrate(batch);
     }
     return verdict;
   }
@@ -178,7 +178,7 @@ class Gate : public ::testing::Test {
   }
 
   std::mt19937 random_{7};
-  std::unique_ptr<Representation> model_ = make("mean", kPatches);
+  std::unique_ptr<Fitter> model_ = make("mean", kPatches);
   CaptureScore score_{kPatches};
 };
 
@@ -272,7 +272,7 @@ TEST_F(CandidatesRoundASphere, VisitingEveryPlaceCoversTheObject) {
     const auto batch = seen_from(place);
     need.score(batch, model->light_field());
     need.note(batch);
-    model->absorb(batch);
+    model->integrate(batch);
     const double now = coverage(need.patches(), views_.reachable(), area_);
     EXPECT_GE(now, last);
     last = now;

@@ -27,18 +27,16 @@ TEST(IwlsLaws, AConstantIsReproduced) {
   for (const int terms : {0, 1, 3, 6}) {
     for_all_options(terms, false, [&](const iwls::Options& options) {
       for (const std::size_t samples : {1, 7, 60}) {
-        const auto representation = make_iwls(options);
-        teach(*representation, scattered(samples, 21), truth);
-        EXPECT_LT(worst_error(representation->light_field(), truth), 1.0 / 4096 + 1e-5)
-            << text_of(options);
+        const auto fitter = make_iwls(options);
+        teach(*fitter, scattered(samples, 21), truth);
+        EXPECT_LT(worst_error(fitter->light_field(), truth), 1.0 / 4096 + 1e-5) << text_of(options);
       }
     });
   }
   for_all_options(3, true, [&](const iwls::Options& options) {
-    const auto representation = make_iwls(options);
-    teach(*representation, scattered(60, 21), truth);
-    EXPECT_LT(worst_error(representation->light_field(), truth), 1.0 / 4096 + 1e-5)
-        << text_of(options);
+    const auto fitter = make_iwls(options);
+    teach(*fitter, scattered(60, 21), truth);
+    EXPECT_LT(worst_error(fitter->light_field(), truth), 1.0 / 4096 + 1e-5) << text_of(options);
   });
 }
 
@@ -49,9 +47,9 @@ TEST(IwlsLaws, FaithfulFitsReproduceALinearLumisphere) {
     return Eigen::Vector3d(0.5 + 0.3 * u - 0.1 * v, 0.4 - 0.2 * u, 0.6 + 0.25 * v);
   };
   for_all_options(3, true, [&](const iwls::Options& options) {
-    const auto representation = make_iwls(options);
-    teach(*representation, scattered(400, 22), truth);
-    EXPECT_LT(worst_error(representation->light_field(), truth), 5e-4) << text_of(options);
+    const auto fitter = make_iwls(options);
+    teach(*fitter, scattered(400, 22), truth);
+    EXPECT_LT(worst_error(fitter->light_field(), truth), 5e-4) << text_of(options);
   });
 }
 
@@ -60,12 +58,12 @@ TEST(IwlsLaws, RidgeFitsComeCloseAndMoreTermsCloser) {
   for (const auto construction : testing::kConstructions) {
     std::vector<double> errors;
     for (const int terms : {1, 3, 6}) {
-      const auto representation = make_iwls({construction, iwls::Layout::grid, 16, terms, false});
-      teach(*representation, scattered(500, 23), glossy);
+      const auto fitter = make_iwls({construction, iwls::Layout::grid, 16, terms, false});
+      teach(*fitter, scattered(500, 23), glossy);
       double sum = 0;
       const auto directions = scattered(500, 24);
       for (const auto& x : directions) {
-        const auto value = testing::colour_of(representation->light_field(), 0, x.cast<float>());
+        const auto value = testing::colour_of(fitter->light_field(), 0, x.cast<float>());
         sum += (value.cast<double>() - glossy(x.x(), x.y())).squaredNorm() / 3;
       }
       errors.push_back(std::sqrt(sum / static_cast<double>(directions.size())));

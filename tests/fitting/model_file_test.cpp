@@ -46,10 +46,10 @@ void expect_same_model(const Model& model, const core::Mesh& mesh, const LightFi
 void expect_round_trip(const std::string& name, const iwls::Options& options) {
   const testing::TemporaryFolder folder;
   const core::Mesh mesh = octahedron();
-  const auto representation = fitted(name, mesh, options);
-  write_model(folder / "a.glb", mesh, representation->light_field());
+  const auto fitter = fitted(name, mesh, options);
+  write_model(folder / "a.glb", mesh, fitter->light_field());
   const Model model = read_model(folder / "a.glb");
-  expect_same_model(model, mesh, representation->light_field());
+  expect_same_model(model, mesh, fitter->light_field());
   write_model(folder / "b.glb", model.mesh, *model.light_field);
   EXPECT_TRUE(file_bytes(folder / "a.glb") == file_bytes(folder / "b.glb"));
 }
@@ -69,8 +69,8 @@ TEST(ModelFile, StoresSixteenBitsPerCoefficient) {
   const testing::TemporaryFolder folder;
   core::Mesh mesh = octahedron();
   const auto size_with = [&](int terms) {
-    const auto representation = fitted("iwls", mesh, {{}, {}, 64, terms, false});
-    write_model(folder / "m.glb", mesh, representation->light_field());
+    const auto fitter = fitted("iwls", mesh, {{}, {}, 64, terms, false});
+    write_model(folder / "m.glb", mesh, fitter->light_field());
     return std::filesystem::file_size(folder / "m.glb");
   };
   // 6 patches x 64 centres x 3 more terms x 3 channels x 2 bytes; the text differs by a few digits.
@@ -83,7 +83,7 @@ TEST(ModelFile, StoresSixteenBitsPerCoefficient) {
 TEST(ModelFile, VertexColoursAreLinear) {
   const testing::TemporaryFolder folder;
   const core::Mesh mesh = octahedron();
-  const auto untouched = make_representation("mean", core::vertex_neighbours(mesh), {});
+  const auto untouched = make_fitter("mean", core::vertex_neighbours(mesh), {});
   write_model(folder / "grey.glb", mesh, untouched->light_field());
   const std::string file = file_bytes(folder / "grey.glb");
   const Glb glb = parse_glb(file);
@@ -100,9 +100,8 @@ TEST(ModelFile, AFailingWriteLeavesTheOldFile) {
   const testing::TemporaryFolder folder;
   testing::put_bytes(folder / "plain", "not a folder");
   const core::Mesh mesh = octahedron();
-  const auto representation = fitted("mean", mesh);
-  EXPECT_THROW(write_model((folder / "plain") / "m.glb", mesh, representation->light_field()),
-               core::Error);
+  const auto fitter = fitted("mean", mesh);
+  EXPECT_THROW(write_model((folder / "plain") / "m.glb", mesh, fitter->light_field()), core::Error);
   EXPECT_EQ(file_bytes(folder / "plain"), "not a folder");
 }
 

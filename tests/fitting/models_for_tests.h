@@ -60,18 +60,18 @@ inline core::Mesh octahedron() {
 }
 
 /// A fitted light field on the mesh; its last patch was never seen.
-inline std::unique_ptr<Representation> fitted(const std::string& name, const core::Mesh& mesh,
-                                              const iwls::Options& options = {}) {
-  auto representation = make_representation(name, core::vertex_neighbours(mesh), {options, 1});
+inline std::unique_ptr<Fitter> fitted(const std::string& name, const core::Mesh& mesh,
+                                      const iwls::Options& options = {}) {
+  auto fitter = make_fitter(name, core::vertex_neighbours(mesh), {options, 1});
   for (const auto& x : scattered(30, 71)) {
     core::SampleBatch batch;
     for (std::uint32_t patch = 0; patch + 1 < mesh.positions.size(); ++patch) {
       add_sample(batch, patch, x, {0.1 * patch, 0.5 + 0.4 * x.x(), 0.5 + 0.3 * x.x() * x.y()});
     }
-    representation->absorb(batch);
+    fitter->integrate(batch);
   }
-  representation->finish();
-  return representation;
+  fitter->finish();
+  return fitter;
 }
 
 inline std::string file_bytes(const std::filesystem::path& path) {

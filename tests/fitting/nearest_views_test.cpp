@@ -25,8 +25,8 @@ using fitting::testing::teach;
 
 constexpr unsigned kSeed = 1618;
 
-std::unique_ptr<Representation> make(std::size_t patches = 1) {
-  return make_representation("nearest-views", isolated(patches), {});
+std::unique_ptr<Fitter> make(std::size_t patches = 1) {
+  return make_fitter("nearest-views", isolated(patches), {});
 }
 
 Eigen::Vector3d wavy(double u, double v) {
@@ -108,9 +108,9 @@ TEST(NearestViews, DegenerateSamplesAreFinite) {
   constexpr float nan = std::numeric_limits<float>::quiet_NaN();
   const auto fitted = make();
   for (const double level : {0.25, 0.75, 0.25, 0.75, 0.5}) {
-    fitted->absorb(one_sample(0, {0.5, 0.5}, Eigen::Vector3d::Constant(level)));
-    fitted->absorb(one_sample(0, {nan, 0}, {0, 0, 0}));
-    fitted->absorb(one_sample(0, {0, 0}, {0, nan, 0}));
+    fitted->integrate(one_sample(0, {0.5, 0.5}, Eigen::Vector3d::Constant(level)));
+    fitted->integrate(one_sample(0, {nan, 0}, {0, 0, 0}));
+    fitted->integrate(one_sample(0, {0, 0}, {0, nan, 0}));
   }
   EXPECT_EQ(fitted->statistics().samples, 5u);
   for (const Eigen::Vector2f& uv : disc_grid(4, 8)) {
@@ -122,14 +122,14 @@ TEST(NearestViews, DegenerateSamplesAreFinite) {
 // No sample: mid grey with hardly any weight. After `finish` the neighbours' mean, and the first
 // sample replaces that.
 TEST(NearestViews, UnseenPatches) {
-  const auto fitted = make_representation(
-      "nearest-views", core::VertexNeighbours{{0, 1, 2}, {1, 0}}, RepresentationOptions{});
+  const auto fitted =
+      make_fitter("nearest-views", core::VertexNeighbours{{0, 1, 2}, {1, 0}}, FitOptions{});
   EXPECT_EQ(fitted->light_field().evaluate(1, {0, 0}).weight_sum, kUnseenWeight);
   EXPECT_EQ(colour_of(fitted->light_field(), 1, {0, 0}), Eigen::Vector3f::Constant(0.5f));
-  fitted->absorb(one_sample(0, {0.1, 0.2}, {0.25, 0.5, 0.75}));
+  fitted->integrate(one_sample(0, {0.1, 0.2}, {0.25, 0.5, 0.75}));
   EXPECT_EQ(fitted->finish().patches, std::vector<std::uint32_t>{1});
   EXPECT_EQ(colour_of(fitted->light_field(), 1, {0.7f, 0}), Eigen::Vector3f(0.25f, 0.5f, 0.75f));
-  fitted->absorb(one_sample(1, {-0.5, 0}, {1, 1, 1}));
+  fitted->integrate(one_sample(1, {-0.5, 0}, {1, 1, 1}));
   EXPECT_EQ(colour_of(fitted->light_field(), 1, {0.7f, 0}), Eigen::Vector3f(1, 1, 1));
   // Two samples of five numbers.
   EXPECT_EQ(fitted->light_field().coefficient_count(), 10u);

@@ -40,7 +40,7 @@ OnePatch<Real> run(const QuadKernelSet<Real>& set, int centers, const FitRule& r
   const double prior[3] = {0.4, 0.5, 0.6};
   for (const auto& x : testing::scattered(200, 41)) {
     const QuadSample sample{x.x(), x.y(), {0.5 + 0.4 * std::sin(5 * x.x()), x.y(), x.x() * x.y()}};
-    set.of_terms(kTerms).absorb(state.fit, state.patch(), sample, prior);
+    set.of_terms(kTerms).integrate(state.fit, state.patch(), sample, prior);
   }
   set.of_terms(kTerms).solve(state.fit, state.patch(), prior);
   return state;
@@ -93,7 +93,7 @@ TEST(QuadKernels, RoundToHalvesLikeEigen) {
       if (i % 4 == 0) bits = (bits & ~0x1FFFU) | 0x1000U;
       const double value = static_cast<double>(std::bit_cast<float>(bits));
       OnePatch<double> state(16, MomentRows<1>::kRows, 1, rule);
-      set.one_term.absorb(state.fit, state.patch(), {0.1, 0.2, {value, value, value}}, prior);
+      set.one_term.integrate(state.fit, state.patch(), {0.1, 0.2, {value, value, value}}, prior);
       EXPECT_EQ(state.coefficients[0], stored_half(value).x) << value << set.instruction_set;
     }
   }

@@ -17,13 +17,13 @@ Eigen::Vector3d wavy(double u, double v) {
   return {0.5 + 0.3 * std::sin(3 * u), 0.5 + 0.2 * std::cos(2 * v), 0.3 + 0.2 * u * v};
 }
 
-const iwls::LightFieldModel& model_of(const Representation& representation) {
-  return dynamic_cast<const iwls::LightFieldModel&>(representation.light_field());
+const iwls::LightFieldModel& model_of(const Fitter& fitter) {
+  return dynamic_cast<const iwls::LightFieldModel&>(fitter.light_field());
 }
 
-std::vector<std::uint16_t> bits_of(const Representation& representation) {
+std::vector<std::uint16_t> bits_of(const Fitter& fitter) {
   std::vector<std::uint16_t> bits;
-  for (const Eigen::half value : model_of(representation).coefficients()) bits.push_back(value.x);
+  for (const Eigen::half value : model_of(fitter).coefficients()) bits.push_back(value.x);
   return bits;
 }
 
@@ -42,7 +42,7 @@ TEST(Quadtree, EqualsListsOfSamplesFittedAnew) {
           const auto directions = scattered(300, 34);
           for (std::size_t i = 0; i < directions.size(); ++i) {
             const auto& x = directions[i];
-            tree->absorb(testing::one_sample(0, x, wavy(x.x(), x.y())));
+            tree->integrate(testing::one_sample(0, x, wavy(x.x(), x.y())));
             reference.add(x.cast<float>(), wavy(x.x(), x.y()).cast<float>());
             if (i != 0 && i != 2 && i != 20 && i != 80 && i + 1 != directions.size()) continue;
             tree->finish();
@@ -107,10 +107,11 @@ TEST(Quadtree, SplitsAboveFourTimesTheRank) {
   const auto directions = scattered(13, 33);
   const auto tree = make_iwls({Construction::quadtree, Layout::grid, 16, 3, true});
   for (std::size_t i = 0; i < 12; ++i) {
-    tree->absorb(testing::one_sample(0, directions[i], wavy(directions[i].x(), directions[i].y())));
+    tree->integrate(
+        testing::one_sample(0, directions[i], wavy(directions[i].x(), directions[i].y())));
     EXPECT_EQ(tree->statistics().fits, i + 1);
   }
-  tree->absorb(testing::one_sample(0, directions[12], wavy(0, 0)));
+  tree->integrate(testing::one_sample(0, directions[12], wavy(0, 0)));
   EXPECT_EQ(tree->statistics().fits, 12u + 4u);
 }
 
@@ -121,11 +122,11 @@ TEST(Quadtree, CountsOfFitsAreThoseOfThePaper) {
   const auto fits_per_view = [](Construction construction, std::size_t views) {
     double sum = 0;
     for (unsigned seed = 0; seed < 20; ++seed) {
-      const auto representation = make_iwls({construction, Layout::grid, 16, 3, true});
+      const auto fitter = make_iwls({construction, Layout::grid, 16, 3, true});
       for (const auto& x : scattered(views, 300 + seed)) {
-        representation->absorb(testing::one_sample(0, x, wavy(x.x(), x.y())));
+        fitter->integrate(testing::one_sample(0, x, wavy(x.x(), x.y())));
       }
-      const FitStatistics statistics = representation->statistics();
+      const FitStatistics statistics = fitter->statistics();
       EXPECT_EQ(statistics.patch_views, views);
       sum += static_cast<double>(statistics.fits) / static_cast<double>(views);
     }

@@ -70,18 +70,18 @@ inline core::SampleBatch one_sample(std::uint32_t patch, const Eigen::Vector2d& 
   return batch;
 }
 
-inline std::unique_ptr<Representation> make_iwls(const iwls::Options& options,
-                                                 std::size_t patches = 1, int threads = 1) {
-  return make_representation("iwls", isolated(patches), {options, threads});
+inline std::unique_ptr<Fitter> make_iwls(const iwls::Options& options, std::size_t patches = 1,
+                                         int threads = 1) {
+  return make_fitter("iwls", isolated(patches), {options, threads});
 }
 
 /// Feeds patch 0 one view per direction, then finishes.
-inline void teach(Representation& representation, const std::vector<Eigen::Vector2d>& directions,
+inline void teach(Fitter& fitter, const std::vector<Eigen::Vector2d>& directions,
                   const Lumisphere& truth) {
   for (const Eigen::Vector2d& x : directions) {
-    representation.absorb(one_sample(0, x, truth(x.x(), x.y())));
+    fitter.integrate(one_sample(0, x, truth(x.x(), x.y())));
   }
-  representation.finish();
+  fitter.finish();
 }
 
 inline Eigen::Vector3f colour_of(const LightField& light_field, std::size_t patch,

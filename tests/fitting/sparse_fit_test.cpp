@@ -26,16 +26,16 @@ using testing::one_sample;
 using testing::scattered;
 using testing::teach;
 
-std::unique_ptr<Representation> make_sparse(std::size_t patches = 1, int threads = 1,
-                                            const Options& options = {}) {
-  RepresentationOptions all;
+std::unique_ptr<Fitter> make_sparse(std::size_t patches = 1, int threads = 1,
+                                    const Options& options = {}) {
+  FitOptions all;
   all.sparse = options;
   all.threads = threads;
-  return make_representation("sparse", isolated(patches), all);
+  return make_fitter("sparse", isolated(patches), all);
 }
 
-PatchModel patch_of(const Representation& representation, std::size_t patch_idx = 0) {
-  return dynamic_cast<const LightFieldModel&>(representation.light_field()).patch(patch_idx);
+PatchModel patch_of(const Fitter& fitter, std::size_t patch_idx = 0) {
+  return dynamic_cast<const LightFieldModel&>(fitter.light_field()).patch(patch_idx);
 }
 
 /// A highlight as wide as a RBF of the finest level, on grey.
@@ -59,16 +59,16 @@ TEST(SparseFit, MattePatchEndsAsOneColour) {
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
   const Eigen::Vector3d truth(0.6, 0.4, 0.2);
-  const auto representation = make_sparse();
-  teach(*representation, scattered(96, seed), [&](double, double) -> Eigen::Vector3d {
+  const auto fitter = make_sparse();
+  teach(*fitter, scattered(96, seed), [&](double, double) -> Eigen::Vector3d {
     // Uniform noise of standard deviation 0.01: half width 0.01 sqrt(3).
     const double noise =
         (static_cast<double>(random()) / 4294967295.0 - 0.5) * 0.02 * std::sqrt(3.0);
     return truth.array() + noise;
   });
   // Three numbers; the mean of 96 samples is off by 0.01 / sqrt(96) = 0.001, four deviations 0.004.
-  EXPECT_EQ(representation->light_field().coefficient_count(), 3u);
-  const Eigen::Vector3d mean = colour_of(representation->light_field(), 0, {0, 0}).cast<double>();
+  EXPECT_EQ(fitter->light_field().coefficient_count(), 3u);
+  const Eigen::Vector3d mean = colour_of(fitter->light_field(), 0, {0, 0}).cast<double>();
   EXPECT_LT((mean - truth).cwiseAbs().maxCoeff(), 0.004);
 }
 
@@ -80,24 +80,24 @@ TEST(SparseFit, SingleRbfIsFoundWithItsAtom) {
   truth.rbf_count = 1;
   truth.atom[0] = atom_idx;
   truth.coefficient[1] = Eigen::Vector3f(0.4f, 0.3f, 0.2f);
-  const auto representation = make_sparse();
-  teach(*representation, scattered(96, 2), [&](double u, double v) -> Eigen::Vector3d {
+  const auto fitter = make_sparse();
+  teach(*fitter, scattered(96, 2), [&](double u, double v) -> Eigen::Vector3d {
     return evaluate(truth, {static_cast<float>(u), static_cast<float>(v)}).cast<double>();
   });
-  const PatchModel fitted = patch_of(*representation);
+  const PatchModel fitted = patch_of(*fitter);
   ASSERT_EQ(fitted.base_terms, kConstantBase);
   ASSERT_EQ(fitted.rbf_count, 1u);
   EXPECT_EQ(fitted.atom[0], atom_idx);
   // Two terms of three numbers and one index.
-  EXPECT_EQ(representation->light_field().coefficient_count(), 7u);
+  EXPECT_EQ(fitter->light_field().coefficient_count(), 7u);
 }
 
 TEST(SparseFit, LinearLumisphereTakesTheLinearBase) {
-  const auto representation = make_sparse();
-  teach(*representation, scattered(96, 3), [](double u, double v) {
+  const auto fitter = make_sparse();
+  teach(*fitter, scattered(96, 3), [](double u, double v) {
     return Eigen::Vector3d(0.5 + 0.3 * u, 0.5 - 0.2 * v, 0.4 + 0.1 * (u + v));
   });
-  const PatchModel fitted = patch_of(*representation);
+  const PatchModel fitted = patch_of(*fitter);
   EXPECT_EQ(fitted.base_terms, kLinearBase);
   EXPECT_EQ(fitted.rbf_count, 0u);
 }
@@ -106,9 +106,9 @@ TEST(SparseFit, HighlightIsBetterThanOneColour) {
   double squared = 0;
   double squared_of_mean = 0;
   for (unsigned seed = 4; seed < 14; ++seed) {
-    const auto representation = make_sparse();
-    teach(*representation, scattered(96, seed), highlight);
-    const LightField& fitted = representation->light_field();
+    const auto fitter = make_sparse();
+    teach(*fitter, scattered(96, seed), highlight);
+    const LightField& fitted = fitter->light_field();
     const Eigen::Vector3d mean = fitted.mean_colour(0).cast<double>();
     for (const Eigen::Vector2f& x : disc_grid()) {
       const Eigen::Vector3d truth =
@@ -148,7 +148,7 @@ TEST(SparseFit, ThreadsDoNotMatter) {
                                    x.x() * std::sin(patch) + x.y() * std::cos(patch));
       add_sample(batch, patch, turned, highlight(turned.x(), turned.y()));
     }
-    EXPECT_EQ(one->absorb(batch).patches, three->absorb(batch).patches);
+    EXPECT_EQ(one->integrate(batch).patches, three->integrate(batch).patches);
   }
   one->finish();
   three->finish();
@@ -165,70 +165,69 @@ TEST(SparseFit, ThreadsDoNotMatter) {
 
 TEST(SparseFit, FewSamplesGiveTheirMean) {
   for (const std::size_t count : {1u, 2u, 3u}) {
-    const auto representation = make_sparse();
+    const auto fitter = make_sparse();
     const auto directions = scattered(count, 7);
-    teach(*representation, directions, highlight);
+    teach(*fitter, directions, highlight);
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
     for (const Eigen::Vector2d& x : directions) mean += highlight(x.x(), x.y());
     mean /= static_cast<double>(count);
     // Below four samples a patch is one colour; halves near 0.5 are exact to 0.00025.
-    const Eigen::Vector3d fitted =
-        colour_of(representation->light_field(), 0, {0.7f, 0}).cast<double>();
+    const Eigen::Vector3d fitted = colour_of(fitter->light_field(), 0, {0.7f, 0}).cast<double>();
     EXPECT_LT((fitted - mean).cwiseAbs().maxCoeff(), 0.0005) << count;
-    EXPECT_EQ(representation->light_field().coefficient_count(), 3u);
+    EXPECT_EQ(fitter->light_field().coefficient_count(), 3u);
   }
 }
 
 TEST(SparseFit, RepeatedDirectionGivesTheMean) {
-  const auto representation = make_sparse();
+  const auto fitter = make_sparse();
   for (int i = 0; i < 40; ++i) {
-    representation->absorb(
+    fitter->integrate(
         one_sample(0, {0.3, -0.4}, Eigen::Vector3d::Constant(i % 2 == 0 ? 0.2 : 0.8)));
   }
-  representation->finish();
-  const Eigen::Vector3f seen = colour_of(representation->light_field(), 0, {0.3f, -0.4f});
+  fitter->finish();
+  const Eigen::Vector3f seen = colour_of(fitter->light_field(), 0, {0.3f, -0.4f});
   EXPECT_NEAR(seen.x(), 0.5f, 0.01f);
 }
 
 TEST(SparseFit, CollinearSweepStaysInRange) {
   // A ramp over half the disc's diameter, 0.3 to 0.7: continued as a line it is 0.1 to 0.9 at the
   // rim; nothing may go further.
-  const auto representation = make_sparse();
+  const auto fitter = make_sparse();
   for (int i = 0; i < 40; ++i) {
     const double u = -0.5 + i / 39.0;
-    representation->absorb(one_sample(0, {u, 0.0}, Eigen::Vector3d::Constant(0.5 + 0.4 * u)));
+    fitter->integrate(one_sample(0, {u, 0.0}, Eigen::Vector3d::Constant(0.5 + 0.4 * u)));
   }
-  representation->finish();
+  fitter->finish();
   for (const Eigen::Vector2f& x : disc_grid()) {
-    const Eigen::Vector3f colour = colour_of(representation->light_field(), 0, x);
+    const Eigen::Vector3f colour = colour_of(fitter->light_field(), 0, x);
     ASSERT_GT(colour.minCoeff(), 0.1f - 0.05f);
     ASSERT_LT(colour.maxCoeff(), 0.9f + 0.05f);
   }
 }
 
 TEST(SparseFit, UnusableSamplesAreIgnored) {
-  const auto representation = make_sparse();
+  const auto fitter = make_sparse();
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double inf = std::numeric_limits<double>::infinity();
-  representation->absorb(one_sample(0, {nan, 0.0}, {0.5, 0.5, 0.5}));
-  representation->absorb(one_sample(0, {0.0, 0.0}, {0.5, inf, 0.5}));
-  EXPECT_EQ(representation->statistics().samples, 0u);
-  representation->absorb(one_sample(0, {0.0, 0.0}, {0.25, 0.25, 0.25}));
-  representation->finish();
-  EXPECT_EQ(colour_of(representation->light_field(), 0, {0, 0}), Eigen::Vector3f::Constant(0.25f));
+  fitter->integrate(one_sample(0, {nan, 0.0}, {0.5, 0.5, 0.5}));
+  fitter->integrate(one_sample(0, {0.0, 0.0}, {0.5, inf, 0.5}));
+  EXPECT_EQ(fitter->statistics().samples, 0u);
+  fitter->integrate(one_sample(0, {0.0, 0.0}, {0.25, 0.25, 0.25}));
+  fitter->finish();
+  EXPECT_EQ(colour_of(fitter->light_field(), 0, {0, 0}), Eigen::Vector3f::Constant(0.25f));
 }
 
 TEST(SparseFit, HoldingStillForMinutesKeepsTheModel) {
   // With a given tolerance: 5000 equal samples would say that the camera has no noise.
-  const auto representation = make_sparse(1, 1, {.tolerance = 0.02f});
-  teach(*representation, scattered(90, 8), highlight);
-  const Eigen::Vector3f before = colour_of(representation->light_field(), 0, {0.3f, -0.2f});
+  const auto fitter = make_sparse(1, 1, {.tolerance = 0.02f});
+  teach(*fitter, scattered(90, 8), highlight);
+  const Eigen::Vector3f before = colour_of(fitter->light_field(), 0, {0.3f, -0.2f});
   for (int i = 0; i < 5000; ++i) {
-    representation->absorb(one_sample(0, {-0.5, 0.5}, highlight(-0.5, 0.5)));
+    fitter->integrate(one_sample(0, {-0.5, 0.5}, highlight(-0.5, 0.5)));
   }
-  representation->finish();
+  fitter->finish();
   // The crowd is one kept sample.
-  const Eigen::Vector3f after = colour_of(representation->light_field(), 0, {0.3f, -0.2f});
+  const Eigen::Vector3f after = colour_of(fitter->light_field(), 0, {0.3f, -0.2f});
   EXPECT_LT((after - before).cwiseAbs().maxCoeff(), 0.02f);
 }
 
@@ -279,21 +278,20 @@ TEST(SparseFit, ResidualsAroundASampleAreThoseOfItsNeighbours) {
 }
 
 TEST(SparseFit, PredictedErrorIsFiniteAndRisesAwayFromSamples) {
-  const auto representation = make_sparse(2);
+  const auto fitter = make_sparse(2);
   // Only the half u < 0 is seen.
   for (const Eigen::Vector2d& x : scattered(80, 11)) {
-    if (x.x() < 0) representation->absorb(one_sample(0, x, highlight(x.x(), x.y())));
+    if (x.x() < 0) fitter->integrate(one_sample(0, x, highlight(x.x(), x.y())));
   }
-  representation->finish();
+  fitter->finish();
   for (const Eigen::Vector2f& x : disc_grid()) {
-    const auto error = representation->predicted_error(0, x);
+    const auto error = fitter->predicted_error(0, x);
     ASSERT_TRUE(error.has_value());
     ASSERT_TRUE(std::isfinite(*error) && *error >= 0.0f);
   }
-  EXPECT_GT(*representation->predicted_error(0, {0.95f, 0}),
-            *representation->predicted_error(0, {-0.5f, 0}));
+  EXPECT_GT(*fitter->predicted_error(0, {0.95f, 0}), *fitter->predicted_error(0, {-0.5f, 0}));
   // Nothing is known of a patch never seen.
-  EXPECT_FALSE(representation->predicted_error(1, {0, 0}).has_value());
+  EXPECT_FALSE(fitter->predicted_error(1, {0, 0}).has_value());
 }
 
 TEST(SparseFit, BadOptionsAreRefused) {

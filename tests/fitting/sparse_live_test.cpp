@@ -18,10 +18,10 @@ using testing::isolated;
 using testing::one_sample;
 using testing::scattered;
 
-std::unique_ptr<Representation> make_sparse(std::size_t patches, const Options& options = {}) {
-  RepresentationOptions all;
+std::unique_ptr<Fitter> make_sparse(std::size_t patches, const Options& options = {}) {
+  FitOptions all;
   all.sparse = options;
-  return make_representation("sparse", isolated(patches), all);
+  return make_fitter("sparse", isolated(patches), all);
 }
 
 Eigen::Vector3d highlight(double u, double v) {
@@ -31,28 +31,26 @@ Eigen::Vector3d highlight(double u, double v) {
 }
 
 TEST(SparseLive, FirstViewIsShownAtOnce) {
-  const auto representation = make_sparse(2);
-  representation->absorb(one_sample(0, {0.2, 0.1}, {0.5, 0.25, 0.75}));
-  EXPECT_EQ(colour_of(representation->light_field(), 0, {0, 0}),
-            Eigen::Vector3f(0.5f, 0.25f, 0.75f));
-  EXPECT_EQ(representation->light_field().observed()[0], 1);
-  EXPECT_EQ(representation->light_field().observed()[1], 0);
+  const auto fitter = make_sparse(2);
+  fitter->integrate(one_sample(0, {0.2, 0.1}, {0.5, 0.25, 0.75}));
+  EXPECT_EQ(colour_of(fitter->light_field(), 0, {0, 0}), Eigen::Vector3f(0.5f, 0.25f, 0.75f));
+  EXPECT_EQ(fitter->light_field().observed()[0], 1);
+  EXPECT_EQ(fitter->light_field().observed()[1], 0);
 }
 
 TEST(SparseLive, HighlightIsFollowedBeforeTheEnd) {
-  const auto representation = make_sparse(1);
+  const auto fitter = make_sparse(1);
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   const auto directions = scattered(96, 1);
   for (const Eigen::Vector2d& x : directions) {
-    representation->absorb(one_sample(0, x, highlight(x.x(), x.y())));
+    fitter->integrate(one_sample(0, x, highlight(x.x(), x.y())));
     mean += highlight(x.x(), x.y()) / 96.0;
   }
   double squared = 0;
   double squared_of_mean = 0;
   for (const Eigen::Vector2f& x : disc_grid()) {
     const Eigen::Vector3d truth = highlight(static_cast<double>(x.x()), static_cast<double>(x.y()));
-    squared +=
-        (colour_of(representation->light_field(), 0, x).cast<double>() - truth).squaredNorm();
+    squared += (colour_of(fitter->light_field(), 0, x).cast<double>() - truth).squaredNorm();
     squared_of_mean += (mean - truth).squaredNorm();
   }
   // A tenth of the variance is 10 dB.
@@ -65,7 +63,7 @@ TEST(SparseLive, WorkOfAViewIsBounded) {
   // systems: the patch as it is, with a linear base, with a RBF more, with one less, and the
   // outcome.
   constexpr std::uint32_t patches = 4800;
-  const auto representation = make_sparse(patches);
+  const auto fitter = make_sparse(patches);
   std::mt19937 random(2);
   std::size_t before = 0;
   for (const Eigen::Vector2d& x : scattered(12, 3)) {
@@ -74,8 +72,8 @@ TEST(SparseLive, WorkOfAViewIsBounded) {
       const double value = static_cast<double>(random()) / 4294967295.0;
       add_sample(batch, patch, x, Eigen::Vector3d::Constant(value));
     }
-    representation->absorb(batch);
-    const std::size_t fits = representation->statistics().fits;
+    fitter->integrate(batch);
+    const std::size_t fits = fitter->statistics().fits;
     EXPECT_LE(fits - before, 1200u);
     before = fits;
   }
@@ -98,8 +96,8 @@ TEST(SparseLive, ToleranceIsTwiceTheNoiseUnlessGiven) {
       add_sample(batch, patch, {0.001 * view, 0.3},
                  {0.5 + noise(random), 0.5 + noise(random), 0.5 + noise(random)});
     }
-    estimated->absorb(batch);
-    given->absorb(batch);
+    estimated->integrate(batch);
+    given->integrate(batch);
   }
   // 2800 differences: the median is off by some 2 %, a bin is 8 % wide.
   EXPECT_NEAR(estimated->statistics().tolerance.value_or(0.0f), 0.02f, 0.002f);

@@ -23,10 +23,10 @@ using fitting::testing::worst_error;
 constexpr unsigned kSeed = 2718;
 constexpr double kPi = 3.14159265358979323846;
 
-std::unique_ptr<Representation> make(const Options& options) {
-  RepresentationOptions all;
+std::unique_ptr<Fitter> make(const Options& options) {
+  FitOptions all;
   all.spherical_harmonics = options;
-  return make_representation("sh", isolated(1), all);
+  return make_fitter("sh", isolated(1), all);
 }
 
 double z_of(double u, double v) {
@@ -98,8 +98,8 @@ TEST(SphericalHarmonics, ConstantIsExact) {
 // A strong ridge leaves only the constant: the mean of the samples, here (0 + 1) / 2.
 TEST(SphericalHarmonics, RidgePullsToTheMean) {
   const auto fitted = make({1, 1000.0});
-  fitted->absorb(one_sample(0, {0.5, 0}, {1, 1, 1}));
-  fitted->absorb(one_sample(0, {-0.5, 0}, {0, 0, 0}));
+  fitted->integrate(one_sample(0, {0.5, 0}, {1, 1, 1}));
+  fitted->integrate(one_sample(0, {-0.5, 0}, {0, 0, 0}));
   fitted->finish();
   // The slope that remains: x^T y / (x^T x + ridge) of the column k1 x = +-.244, so below .3 /
   // 1000.
@@ -122,8 +122,8 @@ TEST(SphericalHarmonics, TurnsWithTheSamples) {
     const auto straight = make({degree, 0.01});
     const auto turned = make({degree, 0.01});
     for (const Eigen::Vector2d& x : scattered(60, kSeed)) {
-      straight->absorb(one_sample(0, x, truth(x.x(), x.y())));
-      turned->absorb(one_sample(0, turn * x, truth(x.x(), x.y())));
+      straight->integrate(one_sample(0, x, truth(x.x(), x.y())));
+      turned->integrate(one_sample(0, turn * x, truth(x.x(), x.y())));
     }
     for (const Eigen::Vector2f& x : fitting::testing::disc_grid(6, 12)) {
       const Eigen::Vector2f y = (turn * x.cast<double>()).cast<float>();
@@ -145,8 +145,8 @@ TEST(SphericalHarmonics, GainIsLinear) {
     const auto dark = make({degree, 0.01});
     for (const Eigen::Vector2d& x : scattered(40, kSeed)) {
       const Eigen::Vector3d colour = coloured(0.5 + 0.5 * x.x() * x.y()).cast<double>();
-      bright->absorb(one_sample(0, x, colour));
-      dark->absorb(one_sample(0, x, 0.5 * colour));
+      bright->integrate(one_sample(0, x, colour));
+      dark->integrate(one_sample(0, x, 0.5 * colour));
     }
     const auto& a = dynamic_cast<const LightFieldModel&>(bright->light_field());
     const auto& b = dynamic_cast<const LightFieldModel&>(dark->light_field());
@@ -174,10 +174,10 @@ TEST(SphericalHarmonics, DegenerateSamplesAreFinite) {
       const auto fitted = make({degree, 0.01});
       double level = 0.2;
       for (const Eigen::Vector2d& x : set) {
-        fitted->absorb(one_sample(0, x, Eigen::Vector3d::Constant(level)));
+        fitted->integrate(one_sample(0, x, Eigen::Vector3d::Constant(level)));
         level = 1 - level;
-        fitted->absorb(one_sample(0, {nan, 0}, {0.5, 0.5, 0.5}));
-        fitted->absorb(one_sample(0, {0, 0}, {infinity, 0.5, 0.5}));
+        fitted->integrate(one_sample(0, {nan, 0}, {0.5, 0.5, 0.5}));
+        fitted->integrate(one_sample(0, {0, 0}, {infinity, 0.5, 0.5}));
       }
       fitted->finish();
       EXPECT_EQ(fitted->statistics().samples, set.size());

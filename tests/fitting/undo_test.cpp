@@ -12,8 +12,8 @@ constexpr std::size_t kPatches = 300;
 
 class Undo : public ::testing::TestWithParam<std::string> {
  protected:
-  static std::unique_ptr<Representation> make() {
-    return make_representation(GetParam(), testing::isolated(kPatches), {.iwls = {}, .threads = 1});
+  static std::unique_ptr<Fitter> make() {
+    return make_fitter(GetParam(), testing::isolated(kPatches), {.iwls = {}, .threads = 1});
   }
 };
 
@@ -25,13 +25,13 @@ TEST_P(Undo, ModelEqualsOneThatNeverSawTheUndoneViews) {
   // One sees 20 views, takes 8 back and sees 10 more; the other sees 12 and the same 10.
   UndoableFitter undone(make);
   const auto never_saw = make();
-  for (int i = 0; i < 20; ++i) undone.absorb(views[i]);
+  for (int i = 0; i < 20; ++i) undone.integrate(views[i]);
   undone.undo(8, [](const core::SampleBatch&, const LightField&) {});
-  for (int i = 0; i < 12; ++i) never_saw->absorb(views[i]);
+  for (int i = 0; i < 12; ++i) never_saw->integrate(views[i]);
   EXPECT_EQ(testing::bytes_of(undone.light_field()), testing::bytes_of(never_saw->light_field()));
   for (int i = 20; i < 30; ++i) {
-    undone.absorb(views[i]);
-    never_saw->absorb(views[i]);
+    undone.integrate(views[i]);
+    never_saw->integrate(views[i]);
   }
   EXPECT_EQ(testing::bytes_of(undone.light_field()), testing::bytes_of(never_saw->light_field()));
   undone.finish();
@@ -42,13 +42,13 @@ TEST_P(Undo, ModelEqualsOneThatNeverSawTheUndoneViews) {
 
 TEST_P(Undo, TakingEverythingBackLeavesAnEmptyModel) {
   std::mt19937 random(4);
-  UndoableFitter representation(make);
-  const std::string empty = testing::bytes_of(representation.light_field());
-  for (int i = 0; i < 3; ++i) representation.absorb(testing::random_view(kPatches, random));
-  EXPECT_NE(testing::bytes_of(representation.light_field()), empty);
-  representation.undo(100, [](const core::SampleBatch&, const LightField&) {});
-  EXPECT_EQ(testing::bytes_of(representation.light_field()), empty);
-  EXPECT_EQ(representation.statistics().samples, 0u);
+  UndoableFitter fitter(make);
+  const std::string empty = testing::bytes_of(fitter.light_field());
+  for (int i = 0; i < 3; ++i) fitter.integrate(testing::random_view(kPatches, random));
+  EXPECT_NE(testing::bytes_of(fitter.light_field()), empty);
+  fitter.undo(100, [](const core::SampleBatch&, const LightField&) {});
+  EXPECT_EQ(testing::bytes_of(fitter.light_field()), empty);
+  EXPECT_EQ(fitter.statistics().samples, 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryRepresentation, Undo, ::testing::ValuesIn(representation_names()),

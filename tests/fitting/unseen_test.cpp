@@ -48,11 +48,11 @@ TEST(FillUnseen, NothingSeenIsMidGrey) {
 // when it is seen at last.
 TEST(FillUnseen, FinishFillsAndLaterViewsReplace) {
   for (const std::string& name : representation_names()) {
-    const auto representation = make_representation(name, path(3), {});
-    representation->absorb(testing::one_sample(0, {0.2, 0.1}, {0.25, 0.5, 0.75}));
-    const ModelUpdate& update = representation->finish();
+    const auto fitter = make_fitter(name, path(3), {});
+    fitter->integrate(testing::one_sample(0, {0.2, 0.1}, {0.25, 0.5, 0.75}));
+    const ModelUpdate& update = fitter->finish();
     EXPECT_TRUE(std::is_sorted(update.patches.begin(), update.patches.end()));
-    const LightField& model = representation->light_field();
+    const LightField& model = fitter->light_field();
     EXPECT_EQ(model.observed(), (std::vector<std::uint8_t>{1, 0, 0}));
     for (const std::size_t patch : {1, 2}) {
       const WeightedColour filled = model.evaluate(patch, {0.0f, 0.0f});
@@ -60,8 +60,8 @@ TEST(FillUnseen, FinishFillsAndLaterViewsReplace) {
       EXPECT_LT((model.mean_colour(patch) - model.mean_colour(0)).norm(), 1e-3f);
       EXPECT_FLOAT_EQ(filled.weight_sum, seen.weight_sum * kUnseenWeight);
     }
-    representation->absorb(testing::one_sample(2, {0.2, 0.1}, {0.0, 1.0, 0.0}));
-    representation->finish();
+    fitter->integrate(testing::one_sample(2, {0.2, 0.1}, {0.0, 1.0, 0.0}));
+    fitter->finish();
     EXPECT_EQ(model.observed(), (std::vector<std::uint8_t>{1, 0, 1}));
     EXPECT_LT((model.mean_colour(2) - Eigen::Vector3f(0, 1, 0)).norm(), 1e-3f);
     // Between a seen blue-grey and a seen green lies their mean.

@@ -20,7 +20,7 @@ struct ModelUpdate {
 
 /// Work done so far.
 struct FitStatistics {
-  std::size_t samples = 0;  ///< samples absorbed
+  std::size_t samples = 0;  ///< samples integrated
   std::size_t fits = 0;     ///< least-squares systems solved
   std::size_t patch_views =
       0;  ///< (patch, view) pairs seen: the denominator of fits per patch per view
@@ -30,18 +30,18 @@ struct FitStatistics {
 
 /// A light field under construction: takes the samples of one view after the other.
 /// The result does not depend on the number of threads.
-class Representation {
+class Fitter {
  public:
-  virtual ~Representation() = default;
+  virtual ~Fitter() = default;
 
-  /// Absorbs one view. The returned reference is valid until the next call.
-  virtual const ModelUpdate& absorb(const core::SampleBatch& batch) = 0;
+  /// Integrates one view. The returned reference is valid until the next call.
+  virtual const ModelUpdate& integrate(const core::SampleBatch& batch) = 0;
 
   /// Solves what was put off and fills patches never seen from their neighbours. More views may
-  /// be absorbed afterwards; then call it again.
+  /// be integrated afterwards; then call it again.
   virtual const ModelUpdate& finish() = 0;
 
-  /// The model as of the last `absorb` or `finish`.
+  /// The model as of the last `integrate` or `finish`.
   [[nodiscard]] virtual const LightField& light_field() const = 0;
 
   [[nodiscard]] virtual FitStatistics statistics() const = 0;

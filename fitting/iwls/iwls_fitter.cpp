@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fitting/iwls/iwls_representation.h"
+#include "fitting/iwls/iwls_fitter.h"
 
 #include "fitting/iwls/adaptive.h"
 #include "fitting/iwls/quad_construction.h"
@@ -17,23 +17,23 @@ ModelShape shape_of(const CenterLayout& layout, int terms) {
 
 // A construction and the model it writes, patch by patch.
 template <typename Builder>
-class IwlsRepresentation final : public Representation {
+class IwlsFitter final : public Fitter {
  public:
-  IwlsRepresentation(const core::VertexNeighbours& neighbours, const FitSettings& settings,
-                     int terms, int threads)
+  IwlsFitter(const core::VertexNeighbours& neighbours, const FitSettings& settings, int terms,
+             int threads)
       : loop_(neighbours, threads),
         builder_(settings, neighbours.vertex_count()),
         totals_(neighbours.vertex_count()),
         unsolved_(neighbours.vertex_count(), 0),
         model_(shape_of(settings.layout, terms), neighbours.vertex_count()) {}
 
-  const ModelUpdate& absorb(const core::SampleBatch& batch) override;
+  const ModelUpdate& integrate(const core::SampleBatch& batch) override;
   const ModelUpdate& finish() override;
   [[nodiscard]] const LightField& light_field() const override { return model_; }
   [[nodiscard]] FitStatistics statistics() const override { return loop_.statistics(); }
 
  private:
-  FitOutcome absorb_sample(std::size_t patch_idx, const Sample& sample);
+  FitOutcome integrate_sample(std::size_t patch_idx, const Sample& sample);
   void announce(const core::SampleBatch& batch, std::size_t idx);
   FitOutcome solve_patch(std::size_t patch_idx);
 
@@ -45,12 +45,12 @@ class IwlsRepresentation final : public Representation {
 };
 
 template <typename Builder>
-FitOutcome IwlsRepresentation<Builder>::absorb_sample(std::size_t patch_idx, const Sample& sample) {
+FitOutcome IwlsFitter<Builder>::integrate_sample(std::size_t patch_idx, const Sample& sample) {
   PatchTotal& total = totals_[patch_idx];
   const bool first = total.count == 0;
   total.add(sample.rgb);
   unsolved_[patch_idx] = 1;
-  FitOutcome outcome = builder_.absorb(patch_idx, sample, total.mean(), model_);
+  FitOutcome outcome = builder_.integrate(patch_idx, sample, total.mean(), model_);
   if constexpr (Builder::kSolvesAtOnce) {
     if (first) outcome.changed |= model_.store_observed(patch_idx, true);
   }
@@ -58,17 +58,17 @@ FitOutcome IwlsRepresentation<Builder>::absorb_sample(std::size_t patch_idx, con
 }
 
 template <typename Builder>
-const ModelUpdate& IwlsRepresentation<Builder>::absorb(const core::SampleBatch& batch) {
-  return loop_.absorb(
+const ModelUpdate& IwlsFitter<Builder>::integrate(const core::SampleBatch& batch) {
+  return loop_.integrate(
       batch,
       [this](std::size_t patch_idx, const Sample& sample) {
-        return absorb_sample(patch_idx, sample);
+        return integrate_sample(patch_idx, sample);
       },
       [&](std::size_t idx) { announce(batch, idx); });
 }
 
 template <typename Builder>
-void IwlsRepresentation<Builder>::announce(const core::SampleBatch& batch, std::size_t idx) {
+void IwlsFitter<Builder>::announce(const core::SampleBatch& batch, std::size_t idx) {
   if constexpr (requires { builder_.prefetch(idx, 0.0, 0.0, model_); }) {
     builder_.prefetch(batch.patch[idx], static_cast<double>(batch.u[idx]),
                       static_cast<double>(batch.v[idx]), model_);
@@ -78,7 +78,7 @@ void IwlsRepresentation<Builder>::announce(const core::SampleBatch& batch, std::
 // Solves a touched patch from its sums alone: priors that moved after a node's last fit leave no
 // trace of the order in which views came.
 template <typename Builder>
-FitOutcome IwlsRepresentation<Builder>::solve_patch(std::size_t patch_idx) {
+FitOutcome IwlsFitter<Builder>::solve_patch(std::size_t patch_idx) {
   if (unsolved_[patch_idx] == 0) return {};
   FitOutcome outcome = builder_.solve(patch_idx, totals_[patch_idx].mean(), model_);
   outcome.changed |= model_.store_observed(patch_idx, true);
@@ -87,7 +87,7 @@ FitOutcome IwlsRepresentation<Builder>::solve_patch(std::size_t patch_idx) {
 }
 
 template <typename Builder>
-const ModelUpdate& IwlsRepresentation<Builder>::finish() {
+const ModelUpdate& IwlsFitter<Builder>::finish() {
   return loop_.finish(
       model_.observed(), [this](std::size_t patch_idx) { return solve_patch(patch_idx); },
       [this](std::size_t patch_idx) { return model_.mean_colour(patch_idx); },
@@ -107,12 +107,12 @@ double refine_above(const Options& options, int terms) {
 }
 
 template <std::size_t kTerms>
-std::unique_ptr<Representation> make_with_terms(const core::VertexNeighbours& neighbours,
-                                                Construction construction,
-                                                const FitSettings& settings, int threads) {
-  const auto make = [&]<typename Builder>() -> std::unique_ptr<Representation> {
-    return std::make_unique<IwlsRepresentation<Builder>>(neighbours, settings,
-                                                         static_cast<int>(kTerms), threads);
+std::unique_ptr<Fitter> make_with_terms(const core::VertexNeighbours& neighbours,
+                                        Construction construction, const FitSettings& settings,
+                                        int threads) {
+  const auto make = [&]<typename Builder>() -> std::unique_ptr<Fitter> {
+    return std::make_unique<IwlsFitter<Builder>>(neighbours, settings, static_cast<int>(kTerms),
+                                                 threads);
   };
   const auto make_quads = [&]<bool kIncremental>() {
     return settings.rule.faithful
@@ -132,8 +132,8 @@ std::unique_ptr<Representation> make_with_terms(const core::VertexNeighbours& ne
 
 }  // namespace
 
-std::unique_ptr<Representation> make_iwls_representation(const core::VertexNeighbours& neighbours,
-                                                         const Options& options, int threads) {
+std::unique_ptr<Fitter> make_iwls_fitter(const core::VertexNeighbours& neighbours,
+                                         const Options& options, int threads) {
   options.check();
   const bool choose_order = options.terms == 0 && !options.faithful;
   const int terms = choose_order ? 6 : (options.faithful ? 3 : options.terms);

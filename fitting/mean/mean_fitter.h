@@ -2,14 +2,13 @@
 #pragma once
 
 #include "core/mesh/neighbours.h"
-#include "fitting/representation.h"
+#include "fitting/fitter.h"
 
 #include <memory>
 
 namespace sheen::fitting::mean {
 
 /// The mean of all samples of a patch. `threads` >= 1.
-std::unique_ptr<Representation> make_mean_representation(const core::VertexNeighbours& neighbours,
-                                                         int threads);
+std::unique_ptr<Fitter> make_mean_fitter(const core::VertexNeighbours& neighbours, int threads);
 
 }  // namespace sheen::fitting::mean

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fitting/mean/mean_representation.h"
+#include "fitting/mean/mean_fitter.h"
 
 #include "fitting/mean/mean_light_field.h"
 #include "fitting/samples/patch_loop.h"
@@ -14,14 +14,14 @@ Eigen::Vector3f as_colour(const Rgb& rgb) {
   return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
 }
 
-class MeanRepresentation final : public Representation {
+class MeanFitter final : public Fitter {
  public:
-  MeanRepresentation(const core::VertexNeighbours& neighbours, int threads)
+  MeanFitter(const core::VertexNeighbours& neighbours, int threads)
       : loop_(neighbours, threads),
         totals_(neighbours.vertex_count()),
         model_(neighbours.vertex_count()) {}
 
-  const ModelUpdate& absorb(const core::SampleBatch& batch) override;
+  const ModelUpdate& integrate(const core::SampleBatch& batch) override;
   const ModelUpdate& finish() override;
   [[nodiscard]] const LightField& light_field() const override { return model_; }
   [[nodiscard]] FitStatistics statistics() const override { return loop_.statistics(); }
@@ -32,8 +32,8 @@ class MeanRepresentation final : public Representation {
   MeanLightField model_;
 };
 
-const ModelUpdate& MeanRepresentation::absorb(const core::SampleBatch& batch) {
-  return loop_.absorb(batch, [this](std::size_t patch_idx, const Sample& sample) {
+const ModelUpdate& MeanFitter::integrate(const core::SampleBatch& batch) {
+  return loop_.integrate(batch, [this](std::size_t patch_idx, const Sample& sample) {
     PatchTotal& total = totals_[patch_idx];
     total.add(sample.rgb);
     // A mean is the solution of a one-term system.
@@ -41,7 +41,7 @@ const ModelUpdate& MeanRepresentation::absorb(const core::SampleBatch& batch) {
   });
 }
 
-const ModelUpdate& MeanRepresentation::finish() {
+const ModelUpdate& MeanFitter::finish() {
   return loop_.finish(
       model_.observed(), nothing_to_solve,
       [this](std::size_t patch_idx) { return model_.mean_colour(patch_idx); },
@@ -52,9 +52,8 @@ const ModelUpdate& MeanRepresentation::finish() {
 
 }  // namespace
 
-std::unique_ptr<Representation> make_mean_representation(const core::VertexNeighbours& neighbours,
-                                                         int threads) {
-  return std::make_unique<MeanRepresentation>(neighbours, threads);
+std::unique_ptr<Fitter> make_mean_fitter(const core::VertexNeighbours& neighbours, int threads) {
+  return std::make_unique<MeanFitter>(neighbours, threads);
 }
 
 }  // namespace sheen::fitting::mean

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fitting/nearest_views/nearest_representation.h"
+#include "fitting/nearest_views/nearest_fitter.h"
 
 #include "fitting/nearest_views/light_field_model.h"
 #include "fitting/samples/patch_loop.h"
@@ -8,12 +8,12 @@
 namespace sheen::fitting::nearest_views {
 namespace {
 
-class NearestRepresentation final : public Representation {
+class NearestFitter final : public Fitter {
  public:
-  NearestRepresentation(const core::VertexNeighbours& neighbours, int threads)
+  NearestFitter(const core::VertexNeighbours& neighbours, int threads)
       : loop_(neighbours, threads), model_(neighbours.vertex_count()) {}
 
-  const ModelUpdate& absorb(const core::SampleBatch& batch) override;
+  const ModelUpdate& integrate(const core::SampleBatch& batch) override;
   const ModelUpdate& finish() override;
   [[nodiscard]] const LightField& light_field() const override { return model_; }
   [[nodiscard]] FitStatistics statistics() const override { return loop_.statistics(); }
@@ -23,15 +23,15 @@ class NearestRepresentation final : public Representation {
   LightFieldModel model_;
 };
 
-const ModelUpdate& NearestRepresentation::absorb(const core::SampleBatch& batch) {
-  return loop_.absorb(batch, [this](std::size_t patch_idx, const Sample& sample) {
+const ModelUpdate& NearestFitter::integrate(const core::SampleBatch& batch) {
+  return loop_.integrate(batch, [this](std::size_t patch_idx, const Sample& sample) {
     model_.add(patch_idx, Eigen::Vector2d(sample.u, sample.v).cast<float>(),
                Eigen::Vector3d(sample.rgb.data()).cast<float>());
     return FitOutcome{0, true};
   });
 }
 
-const ModelUpdate& NearestRepresentation::finish() {
+const ModelUpdate& NearestFitter::finish() {
   return loop_.finish(
       model_.observed(), nothing_to_solve,
       [this](std::size_t patch_idx) { return model_.mean_colour(patch_idx); },
@@ -42,9 +42,8 @@ const ModelUpdate& NearestRepresentation::finish() {
 
 }  // namespace
 
-std::unique_ptr<Representation> make_nearest_representation(
-    const core::VertexNeighbours& neighbours, int threads) {
-  return std::make_unique<NearestRepresentation>(neighbours, threads);
+std::unique_ptr<Fitter> make_nearest_fitter(const core::VertexNeighbours& neighbours, int threads) {
+  return std::make_unique<NearestFitter>(neighbours, threads);
 }
 
 }  // namespace sheen::fitting::nearest_views

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fitting/sparse/sparse_representation.h"
+#include "fitting/sparse/sparse_fitter.h"
 
 #include "core/concurrency/parallel_for.h"
 #include "fitting/samples/change_list.h"
@@ -54,10 +54,9 @@ struct Request {
   }
 };
 
-class SparseRepresentation final : public Representation {
+class SparseFitter final : public Fitter {
  public:
-  SparseRepresentation(const core::VertexNeighbours& neighbours, const Options& options,
-                       int threads)
+  SparseFitter(const core::VertexNeighbours& neighbours, const Options& options, int threads)
       : neighbours_(neighbours),
         options_(options),
         threads_(threads),
@@ -66,7 +65,7 @@ class SparseRepresentation final : public Representation {
         model_(neighbours.vertex_count()),
         workspaces_(options) {}
 
-  const ModelUpdate& absorb(const core::SampleBatch& batch) override;
+  const ModelUpdate& integrate(const core::SampleBatch& batch) override;
   const ModelUpdate& finish() override;
   [[nodiscard]] const LightField& light_field() const override { return model_; }
   [[nodiscard]] FitStatistics statistics() const override {
@@ -79,7 +78,7 @@ class SparseRepresentation final : public Representation {
 
  private:
   void update_tolerance();
-  bool absorb_sample(std::size_t patch_idx, const DirectedColour& sample, NoiseEstimate& noise);
+  bool integrate_sample(std::size_t patch_idx, const DirectedColour& sample, NoiseEstimate& noise);
   void keep_samples(const core::SampleBatch& batch);
   void collect_requests(const core::SampleBatch& batch);
   void improve(const core::SampleBatch& batch);
@@ -104,7 +103,7 @@ class SparseRepresentation final : public Representation {
 };
 
 // Noise is no reason for a term: two deviations keep out all but the rarest.
-void SparseRepresentation::update_tolerance() {
+void SparseFitter::update_tolerance() {
   constexpr float deviations = 2.0f;
   constexpr float least = 0.01f;  // of the best camera poses and meshes are not exact either
   constexpr float most = 0.05f;
@@ -114,8 +113,8 @@ void SparseRepresentation::update_tolerance() {
   }
 }
 
-bool SparseRepresentation::take(std::size_t patch_idx, const SelectedModel& selected,
-                                std::span<const DirectedColour> samples) {
+bool SparseFitter::take(std::size_t patch_idx, const SelectedModel& selected,
+                        std::span<const DirectedColour> samples) {
   PatchState& state = states_[patch_idx];
   state.expected_error = selected.expected_error;
   state.refit_priority = 0;
@@ -128,8 +127,8 @@ bool SparseRepresentation::take(std::size_t patch_idx, const SelectedModel& sele
 
 // Most samples of a slowly moving camera are averaged into a kept one and end here. Returns whether
 // the model changed.
-bool SparseRepresentation::absorb_sample(std::size_t patch_idx, const DirectedColour& sample,
-                                         NoiseEstimate& noise) {
+bool SparseFitter::integrate_sample(std::size_t patch_idx, const DirectedColour& sample,
+                                    NoiseEstimate& noise) {
   // Keep the sample.
   constexpr float saturated = 254.0f / 255.0f;
   PatchState& state = states_[patch_idx];
@@ -158,7 +157,7 @@ bool SparseRepresentation::absorb_sample(std::size_t patch_idx, const DirectedCo
   return model_.store_observed(patch_idx, true) || changed;
 }
 
-void SparseRepresentation::keep_samples(const core::SampleBatch& batch) {
+void SparseFitter::keep_samples(const core::SampleBatch& batch) {
   pool_.reserve(batch.size());
   std::mutex mutex;
   // Patches are independent and appear once: any split of the batch gives the same result.
@@ -171,7 +170,7 @@ void SparseRepresentation::keep_samples(const core::SampleBatch& batch) {
       if (!sample) continue;
       const DirectedColour kept{Eigen::Vector2d(sample->u, sample->v).cast<float>(),
                                 Eigen::Vector3d(sample->rgb.data()).cast<float>()};
-      changes_.mark(i, absorb_sample(batch.patch[i], kept, noise));
+      changes_.mark(i, integrate_sample(batch.patch[i], kept, noise));
       ++samples;
     }
     const std::lock_guard lock(mutex);
@@ -184,7 +183,7 @@ void SparseRepresentation::keep_samples(const core::SampleBatch& batch) {
 // The most urgent of the view's patches, as many as the budget allows: a count of work and not a
 // time, so that results do not depend on the machine. The others keep their refit priority and ask
 // again when they are seen again, or wait for `finish`.
-void SparseRepresentation::collect_requests(const core::SampleBatch& batch) {
+void SparseFitter::collect_requests(const core::SampleBatch& batch) {
   requests_.clear();
   for (std::size_t i = 0; i < batch.size(); ++i) {
     const PatchState& state = states_[batch.patch[i]];
@@ -206,7 +205,7 @@ void SparseRepresentation::collect_requests(const core::SampleBatch& batch) {
   requests_.resize(granted);
 }
 
-void SparseRepresentation::improve(const core::SampleBatch& batch) {
+void SparseFitter::improve(const core::SampleBatch& batch) {
   constexpr std::size_t steps_worth_a_thread = 64;
   std::mutex mutex;
   core::parallel_for(
@@ -231,7 +230,7 @@ void SparseRepresentation::improve(const core::SampleBatch& batch) {
       steps_worth_a_thread);
 }
 
-const ModelUpdate& SparseRepresentation::absorb(const core::SampleBatch& batch) {
+const ModelUpdate& SparseFitter::integrate(const core::SampleBatch& batch) {
   changes_.reset(batch.size());
   keep_samples(batch);
   update_tolerance();
@@ -241,7 +240,7 @@ const ModelUpdate& SparseRepresentation::absorb(const core::SampleBatch& batch) 
   return update_;
 }
 
-void SparseRepresentation::settle() {
+void SparseFitter::settle() {
   std::mutex mutex;
   core::parallel_for(states_.size(), threads_, [&](std::size_t begin, std::size_t end) {
     std::size_t fits = 0;
@@ -262,7 +261,7 @@ void SparseRepresentation::settle() {
   });
 }
 
-void SparseRepresentation::fill() {
+void SparseFitter::fill() {
   std::vector<Eigen::Vector3f> colours(states_.size());
   for (std::size_t patch = 0; patch < colours.size(); ++patch) {
     colours[patch] = model_.mean_colour(patch);
@@ -276,7 +275,7 @@ void SparseRepresentation::fill() {
   }
 }
 
-const ModelUpdate& SparseRepresentation::finish() {
+const ModelUpdate& SparseFitter::finish() {
   changes_.reset(states_.size());
   settle();
   fill();
@@ -284,8 +283,8 @@ const ModelUpdate& SparseRepresentation::finish() {
   return update_;
 }
 
-std::optional<float> SparseRepresentation::predicted_error(std::size_t patch_idx,
-                                                           const Eigen::Vector2f& uv) const {
+std::optional<float> SparseFitter::predicted_error(std::size_t patch_idx,
+                                                   const Eigen::Vector2f& uv) const {
   const PatchState& state = states_[patch_idx];
   if (state.samples.size() == 0) return std::nullopt;
   return sparse::predicted_error(state.samples, pool_, state.spread, uv,
@@ -294,11 +293,11 @@ std::optional<float> SparseRepresentation::predicted_error(std::size_t patch_idx
 
 }  // namespace
 
-std::unique_ptr<Representation> make_sparse_representation(const core::VertexNeighbours& neighbours,
-                                                           const Options& options, int threads) {
+std::unique_ptr<Fitter> make_sparse_fitter(const core::VertexNeighbours& neighbours,
+                                           const Options& options, int threads) {
   options.check();
   assert(threads >= 1);
-  return std::make_unique<SparseRepresentation>(neighbours, options, threads);
+  return std::make_unique<SparseFitter>(neighbours, options, threads);
 }
 
 }  // namespace sheen::fitting::sparse

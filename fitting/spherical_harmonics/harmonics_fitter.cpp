@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fitting/spherical_harmonics/harmonics_representation.h"
+#include "fitting/spherical_harmonics/harmonics_fitter.h"
 
 #include "fitting/samples/patch_loop.h"
 #include "fitting/samples/sample.h"
@@ -57,22 +57,21 @@ struct NormalEquations {
 };
 
 template <std::size_t kTerms>
-class HarmonicsRepresentation final : public Representation {
+class HarmonicsFitter final : public Fitter {
  public:
-  HarmonicsRepresentation(const core::VertexNeighbours& neighbours, const Options& options,
-                          int threads)
+  HarmonicsFitter(const core::VertexNeighbours& neighbours, const Options& options, int threads)
       : options_(options),
         loop_(neighbours, threads),
         systems_(neighbours.vertex_count()),
         model_(options.degree, neighbours.vertex_count()) {}
 
-  const ModelUpdate& absorb(const core::SampleBatch& batch) override;
+  const ModelUpdate& integrate(const core::SampleBatch& batch) override;
   const ModelUpdate& finish() override;
   [[nodiscard]] const LightField& light_field() const override { return model_; }
   [[nodiscard]] FitStatistics statistics() const override { return loop_.statistics(); }
 
  private:
-  FitOutcome absorb_sample(std::size_t patch_idx, const Sample& sample);
+  FitOutcome integrate_sample(std::size_t patch_idx, const Sample& sample);
 
   Options options_;
   PatchLoop loop_;
@@ -82,8 +81,7 @@ class HarmonicsRepresentation final : public Representation {
 };
 
 template <std::size_t kTerms>
-FitOutcome HarmonicsRepresentation<kTerms>::absorb_sample(std::size_t patch_idx,
-                                                          const Sample& sample) {
+FitOutcome HarmonicsFitter<kTerms>::integrate_sample(std::size_t patch_idx, const Sample& sample) {
   auto& system = systems_[patch_idx];
   if (!system) system = std::make_unique<NormalEquations<kTerms>>();
   system->add(sample);
@@ -94,14 +92,14 @@ FitOutcome HarmonicsRepresentation<kTerms>::absorb_sample(std::size_t patch_idx,
 }
 
 template <std::size_t kTerms>
-const ModelUpdate& HarmonicsRepresentation<kTerms>::absorb(const core::SampleBatch& batch) {
-  return loop_.absorb(batch, [this](std::size_t patch_idx, const Sample& sample) {
-    return absorb_sample(patch_idx, sample);
+const ModelUpdate& HarmonicsFitter<kTerms>::integrate(const core::SampleBatch& batch) {
+  return loop_.integrate(batch, [this](std::size_t patch_idx, const Sample& sample) {
+    return integrate_sample(patch_idx, sample);
   });
 }
 
 template <std::size_t kTerms>
-const ModelUpdate& HarmonicsRepresentation<kTerms>::finish() {
+const ModelUpdate& HarmonicsFitter<kTerms>::finish() {
   // Means of the samples, not of the model, whose far side may be anything.
   const auto mean_of = [this](std::size_t patch_idx) -> Eigen::Vector3f {
     return systems_[patch_idx] ? systems_[patch_idx]->mean() : Eigen::Vector3f::Zero();
@@ -114,16 +112,16 @@ const ModelUpdate& HarmonicsRepresentation<kTerms>::finish() {
 
 }  // namespace
 
-std::unique_ptr<Representation> make_harmonics_representation(
-    const core::VertexNeighbours& neighbours, const Options& options, int threads) {
+std::unique_ptr<Fitter> make_harmonics_fitter(const core::VertexNeighbours& neighbours,
+                                              const Options& options, int threads) {
   options.check();
   switch (options.degree) {
     case 1:
-      return std::make_unique<HarmonicsRepresentation<4>>(neighbours, options, threads);
+      return std::make_unique<HarmonicsFitter<4>>(neighbours, options, threads);
     case 2:
-      return std::make_unique<HarmonicsRepresentation<9>>(neighbours, options, threads);
+      return std::make_unique<HarmonicsFitter<9>>(neighbours, options, threads);
     default:
-      return std::make_unique<HarmonicsRepresentation<16>>(neighbours, options, threads);
+      return std::make_unique<HarmonicsFitter<16>>(neighbours, options, threads);
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "fitting/representation.h"
+#include "fitting/fitter.h"
 
 #include "fitting/model_file/model_codec.h"
 #include "fitting/nearest_views/light_field_model.h"
@@ -42,8 +42,8 @@ std::vector<std::string> patches_of(const LightField& light_field) {
   return patches;
 }
 
-std::vector<RepresentationOptions> candidates(int threads) {
-  std::vector<RepresentationOptions> options;
+std::vector<FitOptions> candidates(int threads) {
+  std::vector<FitOptions> options;
   for (const auto construction : testing::kConstructions) {
     for (const bool faithful : {false, true}) {
       options.push_back({{construction, iwls::Layout::disk, 16, 3, faithful}, threads});
@@ -61,14 +61,13 @@ TEST(Representation, ThreadsDoNotChangeTheResult) {
       std::map<int, std::vector<std::uint32_t>> updates;
       for (const int threads : {1, 2, 8}) {
         std::mt19937 random(seed);
-        const auto representation =
-            make_representation(name, testing::isolated(kPatches), candidates(threads)[i]);
+        const auto fitter = make_fitter(name, testing::isolated(kPatches), candidates(threads)[i]);
         for (int view = 0; view < 20; ++view) {
-          updates[threads] = representation->absorb(testing::random_view(kPatches, random)).patches;
+          updates[threads] = fitter->integrate(testing::random_view(kPatches, random)).patches;
         }
-        representation->finish();
-        models[threads] = testing::bytes_of(representation->light_field());
-        fits[threads] = representation->statistics().fits;
+        fitter->finish();
+        models[threads] = testing::bytes_of(fitter->light_field());
+        fits[threads] = fitter->statistics().fits;
       }
       for (const int threads : {2, 8}) {
         EXPECT_TRUE(models[threads] == models[1]) << name << " " << threads;
@@ -82,10 +81,10 @@ TEST(Representation, ThreadsDoNotChangeTheResult) {
 // The update is the exact difference of the models before and after, flags included.
 TEST(Representation, UpdatesListExactlyWhatChanged) {
   for (const std::string& name : representation_names()) {
-    for (const RepresentationOptions& options : candidates(1)) {
+    for (const FitOptions& options : candidates(1)) {
       std::mt19937 random(62);
-      const auto representation = make_representation(name, testing::isolated(kPatches), options);
-      const LightField& model = representation->light_field();
+      const auto fitter = make_fitter(name, testing::isolated(kPatches), options);
+      const LightField& model = fitter->light_field();
       std::vector<std::string> before = patches_of(model);
       std::vector<std::uint8_t> observed_before = model.observed();
       const auto expect_exact = [&](const ModelUpdate& update) {
@@ -101,29 +100,29 @@ TEST(Representation, UpdatesListExactlyWhatChanged) {
         observed_before = model.observed();
       };
       for (int view = 0; view < 6; ++view)
-        expect_exact(representation->absorb(testing::random_view(kPatches, random)));
-      expect_exact(representation->finish());
-      expect_exact(representation->absorb(testing::random_view(kPatches, random)));
-      expect_exact(representation->finish());
+        expect_exact(fitter->integrate(testing::random_view(kPatches, random)));
+      expect_exact(fitter->finish());
+      expect_exact(fitter->integrate(testing::random_view(kPatches, random)));
+      expect_exact(fitter->finish());
       // Nothing new: nothing changes.
-      EXPECT_TRUE(representation->finish().patches.empty());
+      EXPECT_TRUE(fitter->finish().patches.empty());
     }
   }
 }
 
-TEST(Representation, BatchChangesInFinishOnly) {
+TEST(Fitter, BatchChangesInFinishOnly) {
   const auto batch =
       testing::make_iwls({iwls::Construction::batch, iwls::Layout::grid, 16, 3, false});
-  EXPECT_TRUE(batch->absorb(testing::one_sample(0, {0, 0}, {1, 0, 0})).patches.empty());
+  EXPECT_TRUE(batch->integrate(testing::one_sample(0, {0, 0}, {1, 0, 0})).patches.empty());
   EXPECT_EQ(batch->light_field().observed()[0], 0);
   EXPECT_EQ(batch->finish().patches, std::vector<std::uint32_t>{0});
   EXPECT_EQ(batch->light_field().observed()[0], 1);
 }
 
-TEST(Representation, MeanIsTheMean) {
-  const auto mean = make_representation("mean", testing::isolated(1), {});
-  mean->absorb(testing::one_sample(0, {0.9, 0}, {0.25, 0.5, 1.0}));
-  mean->absorb(testing::one_sample(0, {-0.9, 0}, {0.75, 0.5, 0.0}));
+TEST(Fitter, MeanIsTheMean) {
+  const auto mean = make_fitter("mean", testing::isolated(1), {});
+  mean->integrate(testing::one_sample(0, {0.9, 0}, {0.25, 0.5, 1.0}));
+  mean->integrate(testing::one_sample(0, {-0.9, 0}, {0.75, 0.5, 0.0}));
   mean->finish();
   EXPECT_EQ(mean->light_field().mean_colour(0), Eigen::Vector3f(0.5f, 0.5f, 0.5f));
   EXPECT_EQ(mean->light_field().evaluate(0, {0.3f, 0.3f}).weight_sum, 1.0f);
@@ -131,21 +130,20 @@ TEST(Representation, MeanIsTheMean) {
 }
 
 // 2 patches x 16 centres x 3 terms x 3 channels.
-TEST(Representation, CountsEveryStoredNumber) {
+TEST(Fitter, CountsEveryStoredNumber) {
   const auto iwls = testing::make_iwls({}, 2);
   EXPECT_EQ(iwls->light_field().coefficient_count(), 2u * 16u * 3u * 3u);
 }
 
 TEST(Registry, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(representation_names().front(), "iwls");
-  EXPECT_THROW(make_representation("nonsense", testing::isolated(1), {}), std::invalid_argument);
+  EXPECT_THROW(make_fitter("nonsense", testing::isolated(1), {}), std::invalid_argument);
   for (const iwls::Options& options :
        {iwls::Options{{}, {}, 17, 3, false}, iwls::Options{{}, {}, 16, 2, false},
         iwls::Options{{}, {}, 16, 6, true}}) {
-    EXPECT_THROW(make_representation("iwls", testing::isolated(1), {options, 1}),
-                 std::invalid_argument);
+    EXPECT_THROW(make_fitter("iwls", testing::isolated(1), {options, 1}), std::invalid_argument);
   }
-  EXPECT_THROW(make_representation("mean", testing::isolated(1), {{}, 0}), std::invalid_argument);
+  EXPECT_THROW(make_fitter("mean", testing::isolated(1), {{}, 0}), std::invalid_argument);
 }
 
 TEST(Options, NamesAndEnumeratorsAreInverse) {

@@ -2,14 +2,13 @@
 #pragma once
 
 #include "core/mesh/neighbours.h"
-#include "fitting/representation.h"
+#include "fitting/fitter.h"
 
 #include <memory>
 
 namespace sheen::fitting::nearest_views {
 
 /// Keeps all samples; nothing is solved. `threads` >= 1.
-std::unique_ptr<Representation> make_nearest_representation(
-    const core::VertexNeighbours& neighbours, int threads);
+std::unique_ptr<Fitter> make_nearest_fitter(const core::VertexNeighbours& neighbours, int threads);
 
 }  // namespace sheen::fitting::nearest_views
