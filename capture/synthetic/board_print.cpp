@@ -3,7 +3,7 @@
 
 #include "capture/board_print/tag_bitmap.h"
 #include "capture/pose/apriltag_family.h"
-#include "capture/synthetic/finish.h"
+#include "capture/synthetic/brdf.h"
 
 #include <cassert>
 #include <cmath>

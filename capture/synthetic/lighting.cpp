@@ -36,23 +36,23 @@ float ggx(float alpha, float cos_half, float cos_light, float cos_eye) {
 }
 
 /// Share of a soft box's light that goes to the eye, per unit of irradiance: BRDF times cosine.
-Eigen::Vector3f lobe(const Finish& finish, const Eigen::Vector3f& normal,
+Eigen::Vector3f lobe(const Brdf& brdf, const Eigen::Vector3f& normal,
                      const Eigen::Vector3f& towards_eye, const SoftBox& box) {
   const float cos_light = normal.dot(box.towards);
   if (cos_light <= 0) return Eigen::Vector3f::Zero();
-  const Eigen::Vector3f diffuse = finish.albedo / kPi;
-  if (finish.specular <= 0) return diffuse * cos_light;
+  const Eigen::Vector3f diffuse = brdf.albedo / kPi;
+  if (brdf.specular <= 0) return diffuse * cos_light;
 
   // Widen the lobe: a cone of half angle r is spread over half vectors by r / 2.
-  const float alpha = std::min(std::hypot(finish.alpha, box.radius_rad / 2), 1.0f);
+  const float alpha = std::min(std::hypot(brdf.alpha, box.radius_rad / 2), 1.0f);
   const float cos_eye = normal.dot(towards_eye);
   const Eigen::Vector3f half = (box.towards + towards_eye).normalized();
-  const float gloss = schlick(finish.specular, half.dot(towards_eye)) *
+  const float gloss = schlick(brdf.specular, half.dot(towards_eye)) *
                       ggx(alpha, normal.dot(half), cos_light, cos_eye);
 
   // Light enters and leaves the body through the coat, so that the sum keeps within what arrives.
   const float passed =
-      (1 - schlick(finish.specular, cos_light)) * (1 - schlick(finish.specular, cos_eye));
+      (1 - schlick(brdf.specular, cos_light)) * (1 - schlick(brdf.specular, cos_eye));
   return (passed * diffuse + Eigen::Vector3f::Constant(gloss)) * cos_light;
 }
 
@@ -75,7 +75,7 @@ Eigen::Vector3f room_radiance(const Studio& studio, const Eigen::Vector3f& direc
   return studio.horizon + height * (studio.zenith - studio.horizon);
 }
 
-Eigen::Vector3f reflected_radiance(const Finish& finish, const Eigen::Vector3f& normal,
+Eigen::Vector3f reflected_radiance(const Brdf& brdf, const Eigen::Vector3f& normal,
                                    const Eigen::Vector3f& towards_eye, const Studio& studio,
                                    const Incident& incident) {
   const float cos_eye = normal.dot(towards_eye);
@@ -87,12 +87,12 @@ Eigen::Vector3f reflected_radiance(const Finish& finish, const Eigen::Vector3f& 
     if (incident.visible[i] <= 0) continue;
     const SoftBox& box = studio.boxes[i];
     radiance +=
-        incident.visible[i] * lobe(finish, normal, towards_eye, box).cwiseProduct(box.irradiance);
+        incident.visible[i] * lobe(brdf, normal, towards_eye, box).cwiseProduct(box.irradiance);
   }
 
   // Add the room: diffusely, and mirrored at the strength of the Fresnel term.
-  const float fresnel = finish.specular > 0 ? schlick(finish.specular, cos_eye) : 0.0f;
-  radiance += (1 - fresnel) * finish.albedo.cwiseProduct(incident.ambient_irradiance) / kPi;
+  const float fresnel = brdf.specular > 0 ? schlick(brdf.specular, cos_eye) : 0.0f;
+  radiance += (1 - fresnel) * brdf.albedo.cwiseProduct(incident.ambient_irradiance) / kPi;
   if (fresnel > 0) {
     const Eigen::Vector3f mirrored = 2 * cos_eye * normal - towards_eye;
     radiance += fresnel * incident.openness * room_radiance(studio, mirrored);

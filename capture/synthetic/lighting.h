@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "capture/synthetic/finish.h"
+#include "capture/synthetic/brdf.h"
 
 #include <Eigen/Core>
 
@@ -43,7 +43,7 @@ struct Incident {
 /// (Walter et al. 2007). A soft box widens the lobe instead of being integrated (Karis 2013); the
 /// widened lobe keeps its energy. `normal` and `towards_eye` are unit vectors in the board frame.
 /// Zero where the eye is behind the surface.
-Eigen::Vector3f reflected_radiance(const Finish& finish, const Eigen::Vector3f& normal,
+Eigen::Vector3f reflected_radiance(const Brdf& brdf, const Eigen::Vector3f& normal,
                                    const Eigen::Vector3f& towards_eye, const Studio& studio,
                                    const Incident& incident);
 

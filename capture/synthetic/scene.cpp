@@ -2,8 +2,8 @@
 #include "capture/synthetic/scene.h"
 
 #include "capture/synthetic/baked_light.h"
-#include "capture/synthetic/lighting.h"
 #include "capture/synthetic/board_print.h"
+#include "capture/synthetic/lighting.h"
 #include "core/visibility/ray_caster.h"
 
 #include <Eigen/Core>
@@ -115,8 +115,8 @@ Eigen::Vector3f Scene::Impl::object_value(const core::RayHit& hit, const Eigen::
   constexpr float least = 0.02f;
   if (cosine < least) normal = (normal - (least - cosine) * direction).normalized();
 
-  const Finish finish = finish_at(kind, object_from_board * point, kPatternOfRadius * radius_m);
-  return reflected_radiance(finish, normal, -direction, studio, incident_at(in_board, hit, baked));
+  const Brdf brdf = brdf_at(kind, object_from_board * point, kPatternOfRadius * radius_m);
+  return reflected_radiance(brdf, normal, -direction, studio, incident_at(in_board, hit, baked));
 }
 
 Eigen::Vector3f Scene::Impl::board_value(const Eigen::Vector3f& origin,

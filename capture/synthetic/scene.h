@@ -2,7 +2,7 @@
 #pragma once
 
 #include "capture/pose/board.h"
-#include "capture/synthetic/finish.h"
+#include "capture/synthetic/brdf.h"
 #include "core/mesh/mesh.h"
 
 #include <Eigen/Geometry>

@@ -7,7 +7,7 @@
 #include "capture/synthetic/camera_path.h"
 #include "capture/synthetic/hash.h"
 #include "capture/synthetic/motion_jpeg_file.h"
-#include "capture/synthetic/photograph.h"
+#include "capture/synthetic/render_camera.h"
 #include "capture/synthetic/torus_knot.h"
 #include "core/diagnostics/error.h"
 #include "core/files/staged_output.h"
@@ -116,11 +116,11 @@ void write_recording(const fs::path& folder, const Scene& scene, const core::Cam
 
   MotionJpegFile video(folder / "frames.avi", {options.width_px, options.height_px}, kFps,
                        options.jpeg_quality);
-  const Photographer photographer(camera);
+  const RenderCamera render_camera(camera);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const std::uint32_t seed = hash(options.seed, static_cast<std::uint32_t>(i));
-    const Exposure exposure = photographer.expose(scene, poses[i].board_from_camera,
-                                                  options.samples, seed, options.threads);
+    const Exposure exposure = render_camera.expose(scene, poses[i].board_from_camera,
+                                                   options.samples, seed, options.threads);
     video.append(develop(exposure.light, SensorNoise{}, hash(seed, 1U)));
     counter.advance();
   }
@@ -137,9 +137,9 @@ void write_held_out(const fs::path& folder, const Scene& scene, const core::Came
                "poses.txt");
   write_trajectory(folder / "poses.txt", poses);
 
-  const Photographer photographer(camera);
+  const RenderCamera render_camera(camera);
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    const Exposure exposure = photographer.expose(
+    const Exposure exposure = render_camera.expose(
         scene, poses[i].board_from_camera, kHeldOutSamplesFactor * options.samples,
         hash(options.seed, static_cast<std::uint32_t>(i), 2U), options.threads);
     std::array<char, 32> name{};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "capture/synthetic/finish.h"
+#include "capture/synthetic/brdf.h"
 #include "capture/synthetic/scene.h"
 #include "core/geometry/camera.h"
 

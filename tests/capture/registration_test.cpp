@@ -8,7 +8,7 @@
 #include "capture/registration/view_choice.h"
 #include "capture/session/session.h"
 #include "capture/synthetic/camera_path.h"
-#include "capture/synthetic/photograph.h"
+#include "capture/synthetic/render_camera.h"
 #include "capture/synthetic/synthetic_session.h"
 #include "core/mesh/read_mesh.h"
 #include "tests/capture/expect_bad_input.h"
@@ -78,11 +78,11 @@ struct Photographs {
       : mesh(scene.object()), truth(scene.board_from_object()) {
     const synthetic::CameraPath path(synthetic::recording_path(7), scene.object_centre(),
                                      scene.object_radius_m());
-    const synthetic::Photographer photographer(camera);
+    const synthetic::RenderCamera render_camera(camera);
     for (int i = 0; i < count; ++i) {
       const auto seed = static_cast<std::uint32_t>(i);
       const Eigen::Isometry3d board_from_camera = path.board_from_camera((i + 0.5) / count);
-      const auto exposure = photographer.expose(scene, board_from_camera, 4, seed, 1);
+      const auto exposure = render_camera.expose(scene, board_from_camera, 4, seed, 1);
       views.push_back({synthetic::develop(exposure.light, synthetic::SensorNoise{}, seed),
                        board_from_camera.inverse(), 1});
     }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "capture/pose/tag_detector.h"
 #include "capture/synthetic/baked_light.h"
+#include "capture/synthetic/brdf.h"
 #include "capture/synthetic/camera_path.h"
-#include "capture/synthetic/finish.h"
 #include "capture/synthetic/lighting.h"
-#include "capture/synthetic/photograph.h"
+#include "capture/synthetic/render_camera.h"
 #include "capture/synthetic/synthetic_session.h"
 #include "capture/synthetic/torus_knot.h"
 
@@ -43,7 +43,7 @@ Incident first_box_only() {
 
 /// Integral over the hemisphere of eyes of radiance times cosine: the flux a patch sends out per
 /// area.
-double reflected_flux(const Finish& finish, const Studio& studio) {
+double reflected_flux(const Brdf& brdf, const Studio& studio) {
   constexpr int rings = 400;
   constexpr int sectors = 400;
   double flux = 0;
@@ -54,7 +54,7 @@ double reflected_flux(const Finish& finish, const Studio& studio) {
       const float phi = 2 * kPi * (static_cast<float>(sector) + 0.5f) / sectors;
       const Eigen::Vector3f eye(sine * std::cos(phi), sine * std::sin(phi), cosine);
       const Eigen::Vector3f radiance =
-          reflected_radiance(finish, Eigen::Vector3f::UnitZ(), eye, studio, first_box_only());
+          reflected_radiance(brdf, Eigen::Vector3f::UnitZ(), eye, studio, first_box_only());
       flux += static_cast<double>(radiance.x() * cosine);
     }
   }
@@ -62,37 +62,37 @@ double reflected_flux(const Finish& finish, const Studio& studio) {
 }
 
 TEST(Lighting, LambertPatchUnderOneLight) {
-  Finish finish;
-  finish.albedo = {0.8f, 0.4f, 0.2f};
+  Brdf brdf;
+  brdf.albedo = {0.8f, 0.4f, 0.2f};
   const Eigen::Vector3f up = Eigen::Vector3f::UnitZ();
   const Eigen::Vector3f eye = Eigen::Vector3f(0.6f, 0, 0.8f);
 
   // Head on, the irradiance is E = 3: L = albedo E / pi towards every eye.
   const Eigen::Vector3f head_on =
-      reflected_radiance(finish, up, eye, lit_from(up, 3, 0.2f), first_box_only());
-  EXPECT_LT((head_on - finish.albedo * 3 / kPi).norm(), 1e-6f);
+      reflected_radiance(brdf, up, eye, lit_from(up, 3, 0.2f), first_box_only());
+  EXPECT_LT((head_on - brdf.albedo * 3 / kPi).norm(), 1e-6f);
 
   // At 60 degrees the patch catches half of it.
   const Eigen::Vector3f slanted(std::sin(kPi / 3), 0, std::cos(kPi / 3));
   const Eigen::Vector3f oblique =
-      reflected_radiance(finish, up, eye, lit_from(slanted, 3, 0.2f), first_box_only());
-  EXPECT_LT((oblique - finish.albedo * 1.5f / kPi).norm(), 1e-6f);
+      reflected_radiance(brdf, up, eye, lit_from(slanted, 3, 0.2f), first_box_only());
+  EXPECT_LT((oblique - brdf.albedo * 1.5f / kPi).norm(), 1e-6f);
 
   // From below nothing is seen.
-  EXPECT_EQ(reflected_radiance(finish, up, -eye, lit_from(up, 3, 0.2f), first_box_only()),
+  EXPECT_EQ(reflected_radiance(brdf, up, -eye, lit_from(up, 3, 0.2f), first_box_only()),
             Eigen::Vector3f::Zero());
 }
 
 TEST(Lighting, EnamelSendsOutNoMoreThanItReceives) {
-  Finish finish;
-  finish.albedo = Eigen::Vector3f::Constant(0.9f);
-  finish.specular = 0.2f;
+  Brdf brdf;
+  brdf.albedo = Eigen::Vector3f::Constant(0.9f);
+  brdf.specular = 0.2f;
   for (const float alpha : {0.1f, 0.2f, 0.5f}) {
     for (const float angle : {0.0f, 0.7f, 1.3f}) {
-      finish.alpha = alpha;
+      brdf.alpha = alpha;
       const Eigen::Vector3f towards(std::sin(angle), 0, std::cos(angle));
       // Received per area: E cos(angle) with E = 1.
-      EXPECT_LE(reflected_flux(finish, lit_from(towards, 1, 0.1f)),
+      EXPECT_LE(reflected_flux(brdf, lit_from(towards, 1, 0.1f)),
                 static_cast<double>(std::cos(angle)))
           << "alpha " << alpha << " angle " << angle;
     }
@@ -102,7 +102,7 @@ TEST(Lighting, EnamelSendsOutNoMoreThanItReceives) {
 TEST(Lighting, PerfectMirrorLobeKeepsItsEnergy) {
   // Reflectance 1 at every angle and a narrow lobe seen head on: GGX is normalised and masking is
   // negligible, so everything received is sent out. Masking takes about alpha^2 = 1 %.
-  Finish mirror;
+  Brdf mirror;
   mirror.specular = 1;
   mirror.alpha = 0.1f;
   const double flux = reflected_flux(mirror, lit_from(Eigen::Vector3f::UnitZ(), 1, 0));
@@ -126,7 +126,7 @@ TEST(Lighting, OpenGroundReceivesTheClosedForm) {
   EXPECT_LT(ground.irradiance(0.045f, 0).x(), 0.8f * expected);
 }
 
-TEST(Finish, IsAReflectanceEverywhere) {
+TEST(Brdf, IsAReflectanceEverywhere) {
   constexpr unsigned seed = 20240611;
   SCOPED_TRACE(seed);
   std::mt19937 random(seed);
@@ -135,12 +135,12 @@ TEST(Finish, IsAReflectanceEverywhere) {
     const Eigen::Vector3f point(place(random), place(random), place(random));
     for (const SceneKind kind :
          {SceneKind::matte, SceneKind::mixed, SceneKind::glossy, SceneKind::textured}) {
-      const Finish finish = finish_at(kind, point, 0.013f);
-      ASSERT_GT(finish.albedo.minCoeff(), 0);
-      ASSERT_LE(finish.albedo.maxCoeff(), 1);
-      ASSERT_TRUE(finish.specular >= 0 && finish.specular <= 1);
-      ASSERT_TRUE(kind != SceneKind::matte || finish.specular == 0);
-      ASSERT_TRUE(kind != SceneKind::glossy || finish.specular > 0);
+      const Brdf brdf = brdf_at(kind, point, 0.013f);
+      ASSERT_GT(brdf.albedo.minCoeff(), 0);
+      ASSERT_LE(brdf.albedo.maxCoeff(), 1);
+      ASSERT_TRUE(brdf.specular >= 0 && brdf.specular <= 1);
+      ASSERT_TRUE(kind != SceneKind::matte || brdf.specular == 0);
+      ASSERT_TRUE(kind != SceneKind::glossy || brdf.specular > 0);
     }
   }
 }
@@ -258,11 +258,11 @@ TEST_F(SceneTest, RadianceDependsOnPlaceAndDirectionAlone) {
 }
 
 TEST_F(SceneTest, HardlyAnyPixelOfTheObjectSaturates) {
-  const Photographer photographer(synthetic_camera(320, 180));
+  const RenderCamera render_camera(synthetic_camera(320, 180));
   int pixels = 0;
   int saturated = 0;
   for (const double t : {0.05, 0.3, 0.55, 0.8}) {
-    const Exposure exposure = photographer.expose(*scene_, view(t), 2, 1, 1);
+    const Exposure exposure = render_camera.expose(*scene_, view(t), 2, 1, 1);
     for (int y = 0; y < 180; ++y) {
       for (int x = 0; x < 320; ++x) {
         if (exposure.object.at<float>(y, x) < 1) continue;
@@ -277,21 +277,21 @@ TEST_F(SceneTest, HardlyAnyPixelOfTheObjectSaturates) {
 }
 
 TEST_F(SceneTest, ImageDoesNotDependOnThreads) {
-  const Photographer photographer(synthetic_camera(320, 180));
-  const Exposure one = photographer.expose(*scene_, view(0.5), 2, 7, 1);
-  const Exposure three = photographer.expose(*scene_, view(0.5), 2, 7, 3);
+  const RenderCamera render_camera(synthetic_camera(320, 180));
+  const Exposure one = render_camera.expose(*scene_, view(0.5), 2, 7, 1);
+  const Exposure three = render_camera.expose(*scene_, view(0.5), 2, 7, 3);
   EXPECT_EQ(cv::norm(one.light, three.light, cv::NORM_INF), 0);
   EXPECT_EQ(cv::norm(one.object, three.object, cv::NORM_INF), 0);
 }
 
 TEST_F(SceneTest, DetectorFindsTheTagsWhereTheyProject) {
   const core::CameraModel camera = synthetic_camera(800, 450);
-  const Photographer photographer(camera);
+  const RenderCamera render_camera(camera);
   const Eigen::Isometry3d pose = view(0.6);
 
   // Detect in linear light: sRGB brightens pixels that are half black, which moves the edges of
   // black squares inwards by a fifth of a pixel, on every camera.
-  const Exposure exposure = photographer.expose(*scene_, pose, 16, 3, 2);
+  const Exposure exposure = render_camera.expose(*scene_, pose, 16, 3, 2);
   cv::Mat grey;
   cv::cvtColor(exposure.light, grey, cv::COLOR_RGB2GRAY);
   grey.convertTo(grey, CV_8U, 255);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "capture/synthetic/photograph.h"
+#include "capture/synthetic/render_camera.h"
 
 #include "capture/synthetic/hash.h"
 #include "core/concurrency/parallel_for.h"
@@ -34,7 +34,7 @@ std::uint8_t srgb_code(float linear) {
 
 }  // namespace
 
-Photographer::Photographer(const core::CameraModel& camera)
+RenderCamera::RenderCamera(const core::CameraModel& camera)
     : width_px_(camera.width_px()), height_px_(camera.height_px()) {
   // Undo the lens once per pixel corner; inside a pixel it is straight to 1e-6 of a pixel.
   corners_.reserve(static_cast<std::size_t>(width_px_ + 1) *
@@ -49,7 +49,7 @@ Photographer::Photographer(const core::CameraModel& camera)
   }
 }
 
-Eigen::Vector3f Photographer::ray(int x, int y, float fx, float fy) const {
+Eigen::Vector3f RenderCamera::ray(int x, int y, float fx, float fy) const {
   const Eigen::Vector2f* upper =
       &corners_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_px_ + 1) +
                 static_cast<std::size_t>(x)];
@@ -59,7 +59,7 @@ Eigen::Vector3f Photographer::ray(int x, int y, float fx, float fy) const {
   return {ideal.x(), ideal.y(), 1};
 }
 
-Exposure Photographer::expose(const Scene& scene, const Eigen::Isometry3d& board_from_camera,
+Exposure RenderCamera::expose(const Scene& scene, const Eigen::Isometry3d& board_from_camera,
                               int samples, std::uint32_t seed, int threads) const {
   const Eigen::Vector3f eye = board_from_camera.translation().cast<float>();
   const Eigen::Matrix3f board_from_axes = board_from_camera.linear().cast<float>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "capture/synthetic/finish.h"
+#include "capture/synthetic/brdf.h"
 
 #include "capture/synthetic/hash.h"
 
@@ -85,7 +85,7 @@ float smooth_noise(const Eigen::Vector3f& point) {
   return std::clamp(value, -1.0f, 1.0f);
 }
 
-Finish finish_at(SceneKind kind, const Eigen::Vector3f& point_in_object, float unit_m) {
+Brdf brdf_at(SceneKind kind, const Eigen::Vector3f& point_in_object, float unit_m) {
   const Eigen::Vector3f p = point_in_object / unit_m;
 
   // Bend the bands and mottle them, both slowly and finely.
@@ -102,13 +102,13 @@ Finish finish_at(SceneKind kind, const Eigen::Vector3f& point_in_object, float u
 
   if (kind == SceneKind::textured) albedo = mix(albedo, kInk, 0.9f * ink_at(p));
 
-  Finish finish;
-  finish.albedo = albedo.cwiseMax(0.004f).cwiseMin(0.9f);
+  Brdf brdf;
+  brdf.albedo = albedo.cwiseMax(0.004f).cwiseMin(0.9f);
   const float gloss = kind == SceneKind::matte    ? 0.0f
                       : kind == SceneKind::glossy ? 1.0f
                                                   : smooth_step(-0.15f, 0.15f, std::sin(1.57f * s));
-  finish.specular = kGlossySpecular * gloss;
-  finish.alpha = kGlossyAlpha;
+  brdf.specular = kGlossySpecular * gloss;
+  brdf.alpha = kGlossyAlpha;
   return finish;
 }
 

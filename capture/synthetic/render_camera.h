@@ -19,9 +19,9 @@ struct Exposure {
 };
 
 /// A camera with a real lens: rays through every pixel, distortion included.
-class Photographer {
+class RenderCamera {
  public:
-  explicit Photographer(const core::CameraModel& camera);
+  explicit RenderCamera(const core::CameraModel& camera);
 
   /// Averages `samples` rays over the square of every pixel (box filter, a shifted low-discrepancy
   /// set per pixel). The result does not depend on `threads`.

@@ -18,7 +18,7 @@ inline constexpr std::array<std::string_view, 4> kSceneNames{"matte", "mixed", "
 std::optional<SceneKind> scene_kind(std::string_view name);
 
 /// What a point of a surface does with light.
-struct Finish {
+struct Brdf {
   Eigen::Vector3f albedo{0, 0, 0};  ///< diffuse reflectance, linear RGB in [0, 1]
   float specular = 0;               ///< reflectance at normal incidence; 0 = Lambert only
   float alpha = 0.3f;               ///< GGX width (roughness squared), (0, 1]
@@ -26,7 +26,7 @@ struct Finish {
 
 /// Enamel bands under fine marbling, a function of the place in the object frame (metres).
 /// `unit_m` scales the pattern: half the width of a band.
-Finish finish_at(SceneKind kind, const Eigen::Vector3f& point_in_object, float unit_m);
+Brdf brdf_at(SceneKind kind, const Eigen::Vector3f& point_in_object, float unit_m);
 
 /// Smooth noise in [-1, 1] with features of size 1 (gradients on the integer lattice).
 float smooth_noise(const Eigen::Vector3f& point);
