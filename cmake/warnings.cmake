@@ -1,4 +1,4 @@
-# One place for what the compiler is asked to say; every room links it.
+# One place for what the compiler is asked to say; every module links it.
 add_library(sheen_warnings INTERFACE)
 target_compile_options(sheen_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion

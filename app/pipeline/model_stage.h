@@ -20,7 +20,7 @@ namespace sheen::app {
 /// Second stage: posed image -> visibility -> samples -> fit. The only place that counts frames.
 class ModelStage {
  public:
-  /// The doors between the rooms; mesh and light fields are borrowed.
+  /// The interfaces between the modules; mesh and light fields are borrowed.
   struct Parts {
     std::unique_ptr<core::Visibility> visibility;
     const core::Mesh& mesh;

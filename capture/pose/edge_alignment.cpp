@@ -19,10 +19,11 @@ double residual_px(const EdgeObservation& seen, const Vector7d& x) {
 }
 
 double median_residual(const std::vector<EdgeObservation>& observations, const Vector7d& x,
-                       std::vector<double>& room) {
-  room.clear();
-  for (const EdgeObservation& seen : observations) room.push_back(std::abs(residual_px(seen, x)));
-  return core::upper_median(room);
+                       std::vector<double>& scratch) {
+  scratch.clear();
+  for (const EdgeObservation& seen : observations)
+    scratch.push_back(std::abs(residual_px(seen, x)));
+  return core::upper_median(scratch);
 }
 
 /// One step of reweighted least squares with Cauchy weights.
@@ -54,23 +55,23 @@ std::optional<Vector7d> reweighted(const std::vector<EdgeObservation>& observati
 }  // namespace
 
 std::optional<EdgeAlignment> align_edges(const std::vector<EdgeObservation>& observations,
-                                         double finest_scale_px, std::vector<double>& room) {
+                                         double finest_scale_px, std::vector<double>& scratch) {
   constexpr std::size_t fewest = 12;
   constexpr int rounds = 5;
   if (observations.size() < fewest) return std::nullopt;
   Vector7d x = Vector7d::Zero();
   for (int round = 0; round < rounds; ++round) {
-    const double scale = std::max(finest_scale_px, 3 * median_residual(observations, x, room));
+    const double scale = std::max(finest_scale_px, 3 * median_residual(observations, x, scratch));
     const auto next = reweighted(observations, x, scale);
     if (!next || !next->allFinite()) return std::nullopt;
     x = *next;
   }
   const Twist twist = x.head<6>();
-  room.clear();
+  scratch.clear();
   for (const EdgeObservation& seen : observations) {
-    room.push_back(std::abs(seen.outward_by_twist.dot(twist)));
+    scratch.push_back(std::abs(seen.outward_by_twist.dot(twist)));
   }
-  return EdgeAlignment{twist, x[6], core::upper_median(room)};
+  return EdgeAlignment{twist, x[6], core::upper_median(scratch)};
 }
 
 Eigen::Isometry3d moved(const Eigen::Isometry3d& camera_from_board, const Twist& twist) {

@@ -24,10 +24,10 @@ struct EdgeAlignment {
   double moved_px = 0;  ///< median of how far the twist moves the edges
 };
 
-/// Robust least squares over edges (docs/algorithm.md, (20)). `room` is scratch space. No
+/// Robust least squares over edges (docs/algorithm.md, (20)). `scratch` is scratch space. No
 /// value when the observations do not determine a pose.
 std::optional<EdgeAlignment> align_edges(const std::vector<EdgeObservation>& observations,
-                                         double finest_scale_px, std::vector<double>& room);
+                                         double finest_scale_px, std::vector<double>& scratch);
 
 /// exp(twist) * camera_from_board, its rotation orthonormal.
 Eigen::Isometry3d moved(const Eigen::Isometry3d& camera_from_board, const Twist& twist);

@@ -7,7 +7,7 @@
 
 namespace sheen::render::gl {
 
-// Every entry point this room calls: type of the pointer, name without its prefix.
+// Every entry point this module calls: type of the pointer, name without its prefix.
 #define SHEEN_GL_FUNCTIONS(X)                                          \
   X(PFNGLATTACHSHADERPROC, AttachShader)                               \
   X(PFNGLBINDBUFFERBASEPROC, BindBufferBase)                           \

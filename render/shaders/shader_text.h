@@ -5,7 +5,7 @@
 
 namespace sheen::render {
 
-/// Text of a GLSL file of this room, embedded by the build; `name` is its path below render/, as
+/// Text of a GLSL file of this module, embedded by the build; `name` is its path below render/, as
 /// listed in render/CMakeLists.txt. Lives as long as the program.
 std::string_view shader_text(std::string_view name);
 

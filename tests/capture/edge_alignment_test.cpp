@@ -33,8 +33,8 @@ std::vector<EdgeObservation> edges_moved_by(const Twist& twist, double swell_px)
 const Twist kTwist = (Twist() << 2e-3, -1e-3, 3e-3, 1e-3, 2e-3, -1e-3).finished();
 
 TEST(AlignEdges, GivesTheTwistBack) {
-  std::vector<double> room;
-  const auto alignment = align_edges(edges_moved_by(kTwist, 0), 0.1, room);
+  std::vector<double> scratch;
+  const auto alignment = align_edges(edges_moved_by(kTwist, 0), 0.1, scratch);
   ASSERT_TRUE(alignment);
   EXPECT_LT((alignment->twist - kTwist).norm(), 1e-9);
   EXPECT_NEAR(alignment->swell_px, 0, 1e-6);
@@ -43,8 +43,8 @@ TEST(AlignEdges, GivesTheTwistBack) {
 // The swell has a prior of a hundredth of the data's weight: 1 / 1.01 of it is found where it can
 // be told from the motion, and the rest is spread over random directions.
 TEST(AlignEdges, TellsSwellFromMotion) {
-  std::vector<double> room;
-  const auto alignment = align_edges(edges_moved_by(kTwist, 0.5), 0.1, room);
+  std::vector<double> scratch;
+  const auto alignment = align_edges(edges_moved_by(kTwist, 0.5), 0.1, scratch);
   ASSERT_TRUE(alignment);
   EXPECT_NEAR(alignment->swell_px, 0.5 / 1.01, 0.01);
   EXPECT_LT((alignment->twist - kTwist).norm(), 1e-4);
@@ -55,21 +55,21 @@ TEST(AlignEdges, PassesOverAThirdOfWrongEdges) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> wrong_px(-15, 15);
   for (std::size_t i = 0; i < edges.size(); i += 3) edges[i].offset_px = wrong_px(random);
-  std::vector<double> room;
-  const auto alignment = align_edges(edges, 0.1, room);
+  std::vector<double> scratch;
+  const auto alignment = align_edges(edges, 0.1, scratch);
   ASSERT_TRUE(alignment);
   // A Cauchy weight at 15 px is (0.1 / 15)^2: what is left of the pull is some hundredths of a px.
   EXPECT_LT((alignment->twist - kTwist).norm(), 2e-4);
 }
 
 TEST(AlignEdges, HasNoAnswerForTooLittle) {
-  std::vector<double> room;
-  EXPECT_FALSE(align_edges({}, 0.1, room));
+  std::vector<double> scratch;
+  EXPECT_FALSE(align_edges({}, 0.1, scratch));
   std::vector<EdgeObservation> edges = edges_moved_by(kTwist, 0);
   edges.resize(5);
-  EXPECT_FALSE(align_edges(edges, 0.1, room));
+  EXPECT_FALSE(align_edges(edges, 0.1, scratch));
   // Twenty times the same edge fixes one direction of six.
-  EXPECT_FALSE(align_edges(std::vector<EdgeObservation>(20, edges[0]), 0.1, room));
+  EXPECT_FALSE(align_edges(std::vector<EdgeObservation>(20, edges[0]), 0.1, scratch));
 }
 
 TEST(Moved, IsUndoneByItsInverse) {
