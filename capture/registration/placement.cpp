@@ -62,10 +62,10 @@ std::vector<PointPair> read_point_pairs(const std::filesystem::path& path) {
 PairPlacement place_by_pairs(const std::vector<PointPair>& pairs,
                              const std::filesystem::path& path) {
   Eigen::Matrix3Xd object(3, static_cast<Eigen::Index>(pairs.size()));
-  Eigen::Matrix3Xd stage(3, object.cols());
+  Eigen::Matrix3Xd board(3, object.cols());
   for (Eigen::Index i = 0; i < object.cols(); ++i) {
     object.col(i) = pairs[static_cast<std::size_t>(i)].in_object;
-    stage.col(i) = pairs[static_cast<std::size_t>(i)].in_board;
+    board.col(i) = pairs[static_cast<std::size_t>(i)].in_board;
   }
   for (const Eigen::Matrix3Xd& points : {object, board}) {
     const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(points.colwise() - points.rowwise().mean());

@@ -109,7 +109,7 @@ Brdf brdf_at(SceneKind kind, const Eigen::Vector3f& point_in_object, float unit_
                                                   : smooth_step(-0.15f, 0.15f, std::sin(1.57f * s));
   brdf.specular = kGlossySpecular * gloss;
   brdf.alpha = kGlossyAlpha;
-  return finish;
+  return brdf;
 }
 
 }  // namespace sheen::capture::synthetic

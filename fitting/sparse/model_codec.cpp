@@ -32,7 +32,7 @@ json atoms_as_json() {
 void pack(const PatchModel& patch, PackedArrays& packed) {
   packed.shapes.push_back(static_cast<std::uint8_t>(
       patch.rbf_count | (patch.base_terms == kLinearBase ? kLinearBit : 0u)));
-  for (std::size_t i = 0; i < patch.rbf_count; ++i) packed.bumps.push_back(patch.atom[i]);
+  for (std::size_t i = 0; i < patch.rbf_count; ++i) packed.rbfs.push_back(patch.atom[i]);
   for (std::size_t term = 0; term < patch.term_count(); ++term) {
     for (const float channel : patch.coefficient[term]) {
       packed.coefficients.emplace_back(channel);

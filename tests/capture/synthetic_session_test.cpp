@@ -180,14 +180,14 @@ TEST_F(SyntheticSession, MotionJpegComesBack) {
   // lengths. At quality 95 the steps of the DCT are at most 12 grey levels, and the high ones are
   // empty: an error of 2 levels, 42 dB, would be much.
   const fs::path path = folder_ / "v.avi";
-  const auto image = [](int i) {
+  const auto drawn = [](int i) {
     cv::Mat image(48, 64, CV_8UC3, cv::Scalar::all(90));
     cv::circle(image, {20 + 8 * i, 24}, 6 + 4 * i, cv::Scalar::all(200), cv::FILLED);
     cv::GaussianBlur(image, image, {}, 3);
     return image;
   };
   MotionJpegFile video(path, {64, 48}, 30, 95);
-  for (int i = 0; i < 3; ++i) video.append(image(i));
+  for (int i = 0; i < 3; ++i) video.append(drawn(i));
   video.close();
 
   cv::VideoCapture reader(path.string());
@@ -197,7 +197,7 @@ TEST_F(SyntheticSession, MotionJpegComesBack) {
   cv::Mat image;
   for (int i = 0; i < 3; ++i) {
     ASSERT_TRUE(reader.read(image));
-    EXPECT_GT(cv::PSNR(image, image(i)), 42) << "image " << i;
+    EXPECT_GT(cv::PSNR(image, drawn(i)), 42) << "image " << i;
   }
   EXPECT_FALSE(reader.read(image));
 }

@@ -326,7 +326,7 @@ TEST(SparseCodecLimits, BrokenPatchesAreRefused) {
   const auto accepted = [&](const std::string& shape, const std::string& rbfs,
                             std::size_t coefficient_bytes) {
     return decoded({{"shapes", shape},
-                    {"bumps", RBFs},
+                    {"bumps", rbfs},
                     {"coefficients", std::string(coefficient_bytes, '\0')}},
                    parameters, 1)
         .has_value();
