@@ -35,10 +35,13 @@ std::vector<std::string> patches_of(const LightField& light_field) {
     }
     return patches;
   }
-  // All others keep the same number of bytes for every patch.
+  // All others keep the same number of bytes for every patch, in front of the observed flags.
   const std::string all = testing::bytes_of(light_field);
-  const std::size_t stride = all.size() / kPatches;
-  for (std::size_t i = 0; i < kPatches; ++i) patches[i] = all.substr(i * stride, stride);
+  const std::size_t flags = all.size() - kPatches;
+  const std::size_t stride = flags / kPatches;
+  for (std::size_t i = 0; i < kPatches; ++i) {
+    patches[i] = all.substr(i * stride, stride) + all[flags + i];
+  }
   return patches;
 }
 
