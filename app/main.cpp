@@ -27,23 +27,14 @@ constexpr int kRunFailed = 1;
 constexpr int kBadInput = 2;
 constexpr int kInterrupted = 130;  // 128 + SIGINT, as shells expect
 
-/// CLI11's message is one line already; say where help is on the same line.
-int report_parse_error(const CLI::App& program, const CLI::ParseError& error) {
-  if (error.get_exit_code() == kDone) return program.exit(error);  // --help, --version
-  std::fprintf(stderr, "sheen: %s; see sheen --help or sheen COMMAND --help\n", error.what());
-  return kBadInput;
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace sheen;
-  CLI::App program(
+  app::CommandLine program(
       "Sheen captures how an object looks from every direction: a recording of a walk round it\n"
-      "becomes a surface light field that can be drawn from anywhere.");
-  program.set_version_flag("--version", "sheen " SHEEN_VERSION);
-  program.require_subcommand(0, 1);  // none is reported below: CLI11 would not name a wrong one
-  program.footer(
+      "becomes a surface light field that can be drawn from anywhere.",
+      "sheen " SHEEN_VERSION,
       "Start with the recording that comes with the source:\n"
       "  sheen replay sample_data/glossy -o model.glb --hold-out 5\n"
       "  sheen evaluate model.glb sample_data/glossy/held_out\n"
@@ -66,11 +57,8 @@ int main(int argc, char** argv) {
   // FFmpeg reports damaged images on stderr by itself; ours is the one line that counts.
   setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
   try {
-    program.parse(argc, argv);
-    if (program.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
+    program.run(argc, argv);
     return kDone;
-  } catch (const CLI::ParseError& error) {
-    return report_parse_error(program, error);
   } catch (const core::Error& error) {
     std::fprintf(stderr, "sheen: %s\n", error.what());
     return error.kind() == core::Error::Kind::bad_input ? kBadInput : kRunFailed;

@@ -19,3 +19,18 @@ function(sheen_kernels options)
   set_source_files_properties(${ARGN} PROPERTIES
     COMPILE_OPTIONS "${options}" SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
+
+# sheen_embed(OUTPUT FUNCTION f NAMESPACE n HEADER h FILES ...): makes the C++ file OUTPUT, in which
+# the function returns the text of a file by its name, so that the program needs no files at run time.
+function(sheen_embed output)
+  cmake_parse_arguments(EMBED "" "FUNCTION;NAMESPACE;HEADER" "FILES" ${ARGN})
+  set(script ${PROJECT_SOURCE_DIR}/cmake/embed_script.cmake)
+  add_custom_command(
+    OUTPUT ${output}
+    COMMAND ${CMAKE_COMMAND} "-DFILES=${EMBED_FILES}" -DROOT=${CMAKE_CURRENT_SOURCE_DIR}
+      -DOUTPUT=${output} -DFUNCTION=${EMBED_FUNCTION} -DNAMESPACE=${EMBED_NAMESPACE}
+      -DHEADER=${EMBED_HEADER} -P ${script}
+    DEPENDS ${EMBED_FILES} ${script}
+    COMMENT "Embedding ${EMBED_FUNCTION}"
+    VERBATIM)
+endfunction()

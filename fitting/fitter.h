@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "core/samples/sample_batch.h"
+#include "core/samples/observation.h"
 #include "fitting/light_field.h"
 
 #include <Eigen/Core>
@@ -13,9 +13,10 @@
 
 namespace sheen::fitting {
 
-/// What changed in a light field since the last call: patch indices, ascending, no repeats.
+/// What changed in a light field since the last call: indices of its elements
+/// (LightField::element_count), ascending, no repeats.
 struct ModelUpdate {
-  std::vector<std::uint32_t> patches;
+  std::vector<std::uint32_t> elements;
 };
 
 /// Work done so far.
@@ -28,30 +29,27 @@ struct FitStatistics {
   std::optional<float> tolerance{};
 };
 
-/// A light field under construction: takes the samples of one view after the other.
+/// A light field under construction: integrates one observation after the other.
 /// The result does not depend on the number of threads.
 class Fitter {
  public:
   virtual ~Fitter() = default;
 
-  /// Integrates one view. The returned reference is valid until the next call.
-  virtual const ModelUpdate& integrate(const core::SampleBatch& batch) = 0;
+  /// Whether `integrate` looks at anything but the samples. Where it does not, nothing else of an
+  /// observation need be kept for undo or for a comparison.
+  [[nodiscard]] virtual bool needs_images() const { return true; }
 
-  /// Solves what was put off and fills patches never seen from their neighbours. More views may
-  /// be integrated afterwards; then call it again.
+  /// Integrates one view. The returned reference is valid until the next call.
+  virtual const ModelUpdate& integrate(const core::Observation& observation) = 0;
+
+  /// Solves what was put off and fills what was never seen from its neighbours. More views may be
+  /// integrated afterwards; then call it again.
   virtual const ModelUpdate& finish() = 0;
 
   /// The model as of the last `integrate` or `finish`.
   [[nodiscard]] virtual const LightField& light_field() const = 0;
 
   [[nodiscard]] virtual FitStatistics statistics() const = 0;
-
-  /// How wrong the model is likely to be for a patch towards a direction on its unit disc, >= 0, to
-  /// rank places that need more views; nothing where the representation or the patch cannot tell.
-  [[nodiscard]] virtual std::optional<float> predicted_error(std::size_t /*patch_idx*/,
-                                                             const Eigen::Vector2f& /*uv*/) const {
-    return std::nullopt;
-  }
 };
 
 }  // namespace sheen::fitting

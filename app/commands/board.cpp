@@ -58,12 +58,12 @@ void run_board(const BoardOptions& options, const CommandContext& context) {
                               options.output.string(), yaml.string(), advice));
 }
 
-void add_design_options(CLI::App& command, BoardOptions& options) {
+void add_design_options(Command command, BoardOptions& options) {
   capture::BoardDesign& design = options.design;
   std::vector<std::string> papers;
   for (const capture::Paper& paper : capture::kPapers) papers.emplace_back(paper.name);
   command
-      .add_option_function<std::string>(
+      .option(
           "--paper",
           [&design](const std::string& name) {
             for (const capture::Paper& paper : capture::kPapers) {
@@ -71,62 +71,58 @@ void add_design_options(CLI::App& command, BoardOptions& options) {
             }
           },
           "Paper, upright (default a4)")
-      ->check(CLI::IsMember(papers));
-  command.add_option("--tag-mm", design.tag_mm, "Side of a tag's black square")
-      ->check(CLI::Range(5.0, 250.0).description(""))
-      ->type_name("MM")
-      ->capture_default_str();
+      .one_of(papers);
+  command.option("--tag-mm", design.tag_mm, "Side of a tag's black square")
+      .range(5.0, 250.0)
+      .type("MM")
+      .show_default();
   command
-      .add_option("--columns", design.columns,
-                  "Cells across; more than one sheet holds are printed on several, with marks to "
-                  "cut along (default: one sheet)")
-      ->check(CLI::Range(1, 60).description(""))
-      ->type_name("N");
-  command.add_option("--rows", design.rows, "Cells down, likewise")
-      ->check(CLI::Range(1, 60).description(""))
-      ->type_name("N");
-  command.add_flag("--full", design.full_grid,
-                   "Tags in the middle too, for calibrating; default: the rim only, the middle is "
-                   "left to the object");
+      .option("--columns", design.columns,
+              "Cells across; more than one sheet holds are printed on several, with marks to "
+              "cut along (default: one sheet)")
+      .range(1, 60)
+      .type("N");
+  command.option("--rows", design.rows, "Cells down, likewise").range(1, 60).type("N");
+  command.flag("--full", design.full_grid,
+               "Tags in the middle too, for calibrating; default: the rim only, the middle is "
+               "left to the object");
   const std::vector<std::string> families(capture::kPrintableFamilies.begin(),
                                           capture::kPrintableFamilies.end());
-  command.add_option("--family", design.family, "Tag family")
-      ->check(CLI::IsMember(families))
-      ->capture_default_str();
-  command.add_option("--first-id", design.first_id, "Id of the tag at the lower left")
-      ->check(CLI::NonNegativeNumber.description(""))
-      ->type_name("ID")
-      ->capture_default_str();
+  command.option("--family", design.family, "Tag family").one_of(families).show_default();
+  command.option("--first-id", design.first_id, "Id of the tag at the lower left")
+      .not_negative()
+      .type("ID")
+      .show_default();
 }
 
 }  // namespace
 
-void add_board_command(CLI::App& program, CommandContext& context) {
+void add_board_command(CommandLine& program, CommandContext& context) {
   auto options = std::make_shared<BoardOptions>();
-  CLI::App* command =
-      program.add_subcommand("board", "Make a printable board of tags (PDF) and its board.yaml");
-  command->footer(
+  Command command =
+      program.command("board", "Make a printable board of tags (PDF) and its board.yaml");
+  command.example(
       "Examples:\n"
       "  sheen board -o board.pdf                        one A4 sheet, free middle\n"
       "  sheen board -o board.pdf --measured-mm 148.6    the ruler of my print is 148.6 mm long\n"
       "  sheen board -o big.pdf --tag-mm 40 --columns 9 --rows 9    several sheets\n"
       "  sheen board -o grid.pdf --full --tag-mm 25      full grid, for sheen calibrate");
-  command->add_option("-o,--output", options->output, "PDF to write; the .yaml comes beside it")
-      ->required()
-      ->check([](const std::string& text) {
+  command.option("-o,--output", options->output, "PDF to write; the .yaml comes beside it")
+      .required()
+      .check([](const std::string& text) {
         return std::filesystem::path(text).extension() == ".pdf" ? std::string()
                                                                  : "must end with .pdf";
       })
-      ->type_name("FILE.pdf");
-  add_design_options(*command, *options);
+      .type("FILE.pdf");
+  add_design_options(command, *options);
   command
-      ->add_option("--measured-mm", options->measured_mm,
-                   "Length of the printed ruler as you measure it; board.yaml then fits the print")
-      ->check(CLI::Range(75.0, 300.0).description(""))
-      ->type_name("MM")
-      ->capture_default_str();
-  add_common_options(*command, context);
-  command->callback([options, &context] { run_board(*options, context); });
+      .option("--measured-mm", options->measured_mm,
+              "Length of the printed ruler as you measure it; board.yaml then fits the print")
+      .range(75.0, 300.0)
+      .type("MM")
+      .show_default();
+  add_common_options(command, context);
+  command.action([options, &context] { run_board(*options, context); });
 }
 
 }  // namespace sheen::app

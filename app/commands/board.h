@@ -6,6 +6,6 @@
 namespace sheen::app {
 
 /// `sheen board -o board.pdf`: a printable board of tags and its board.yaml.
-void add_board_command(CLI::App& program, CommandContext& context);
+void add_board_command(CommandLine& program, CommandContext& context);
 
 }  // namespace sheen::app

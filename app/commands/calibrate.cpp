@@ -196,32 +196,31 @@ void run_calibrate(const CalibrateOptions& options, const CommandContext& contex
                   describe(*found) + fmt::format("written  {}\n", options.output.string()));
 }
 
-void add_target_options(CLI::App& command, CalibrateOptions& options) {
-  auto* target = command.add_option_group("target", "What the images show");
-  target->add_option("--board", options.board, "A board of tags, such as sheen board prints")
-      ->type_name("FILE.yaml");
+void add_target_options(Command command, CalibrateOptions& options) {
+  Command target = command.exactly_one_of("target", "What the images show");
+  target.option("--board", options.board, "A board of tags, such as sheen board prints")
+      .type("FILE.yaml");
   target
-      ->add_option("--chessboard", options.chessboard,
-                   "A chessboard with this many inner corners across and down")
-      ->check([](const std::string& text) {
+      .option("--chessboard", options.chessboard,
+              "A chessboard with this many inner corners across and down")
+      .check([](const std::string& text) {
         capture::Chessboard board;
         return parse_chessboard(text, board);
       })
-      ->type_name("COLUMNSxROWS");
-  target->require_option(1);
-  command.add_option("--square-mm", options.square_mm, "Side of the chessboard's squares")
-      ->check(CLI::Range(0.1, 10'000.0).description(""))
-      ->type_name("MM")
-      ->capture_default_str();
+      .type("COLUMNSxROWS");
+  command.option("--square-mm", options.square_mm, "Side of the chessboard's squares")
+      .range(0.1, 10'000.0)
+      .type("MM")
+      .show_default();
 }
 
 }  // namespace
 
-void add_calibrate_command(CLI::App& program, CommandContext& context) {
+void add_calibrate_command(CommandLine& program, CommandContext& context) {
   auto options = std::make_shared<CalibrateOptions>();
-  CLI::App* command = program.add_subcommand(
+  Command command = program.command(
       "calibrate", "Measure a camera's lens from images of a printed board or chessboard");
-  command->footer(
+  command.example(
       "Examples:\n"
       "  sheen board -o grid.pdf --full --tag-mm 25\n"
       "  sheen calibrate walk.mp4 --board grid.yaml -o camera.yaml --picture coverage.png\n"
@@ -231,29 +230,28 @@ void add_calibrate_command(CLI::App& program, CommandContext& context) {
       "Lock focus and zoom first. Move the target through the whole image, its corners too,\n"
       "near and far, tilted to all sides by 30 degrees and more.");
   command
-      ->add_option(
-          "source", options->source,
-          "Video, folder of images, session folder (its recording is taken), or a camera's "
-          "device such as /dev/video0")
-      ->required();
-  command->add_option("-o,--output", options->output, "Camera file to write")
-      ->required()
-      ->type_name("camera.yaml");
-  add_target_options(*command, *options);
-  command->add_option("--views", options->views, "Images to calibrate from, chosen for spread")
-      ->check(CLI::Range(3, 100).description(""))
-      ->type_name("N")
-      ->capture_default_str();
-  command->add_option("--seconds", options->seconds, "How long a camera's device is watched")
-      ->check(CLI::Range(5.0, 3600.0).description(""))
-      ->type_name("S")
-      ->capture_default_str();
+      .option("source", options->source,
+              "Video, folder of images, session folder (its recording is taken), or a camera's "
+              "device such as /dev/video0")
+      .required();
+  command.option("-o,--output", options->output, "Camera file to write")
+      .required()
+      .type("camera.yaml");
+  add_target_options(command, *options);
+  command.option("--views", options->views, "Images to calibrate from, chosen for spread")
+      .range(3, 100)
+      .type("N")
+      .show_default();
+  command.option("--seconds", options->seconds, "How long a camera's device is watched")
+      .range(5.0, 3600.0)
+      .type("S")
+      .show_default();
   command
-      ->add_option("--picture", options->image,
-                   "Also draw where points were seen and by how much they miss")
-      ->type_name("FILE.png");
-  add_common_options(*command, context);
-  command->callback([options, &context] { run_calibrate(*options, context); });
+      .option("--picture", options->image,
+              "Also draw where points were seen and by how much they miss")
+      .type("FILE.png");
+  add_common_options(command, context);
+  command.action([options, &context] { run_calibrate(*options, context); });
 }
 
 }  // namespace sheen::app

@@ -6,6 +6,6 @@
 namespace sheen::app {
 
 /// `sheen calibrate SOURCE -o camera.yaml`: intrinsics and distortion from images of a target.
-void add_calibrate_command(CLI::App& program, CommandContext& context);
+void add_calibrate_command(CommandLine& program, CommandContext& context);
 
 }  // namespace sheen::app

@@ -4,12 +4,12 @@
 #include "app/commands/camera_list.h"
 #include "app/commands/replay.h"
 #include "app/interrupt.h"
-#include "app/pipeline/session_parts.h"
 #include "app/preview/window.h"
 #include "capture/pose/board.h"
 #include "capture/session/camera_recording.h"
 #include "capture/session/session.h"
 #include "core/diagnostics/error.h"
+#include "pipeline/session_parts.h"
 
 #include <fmt/format.h>
 
@@ -56,7 +56,7 @@ void check_size(const capture::CameraDescription& camera, const core::CameraMode
 void check_before_recording(const CaptureOptions& options, const capture::SessionSetup& setup,
                             const CommandContext& context) {
   static_cast<void>(capture::read_board(setup.board));
-  static_cast<void>(read_object_mesh(setup.mesh));
+  static_cast<void>(pipeline::read_object_mesh(setup.mesh));
   context.check_outputs({options.fit.output});
   if (options.fit.preview) Window::check_display();
 }
@@ -100,7 +100,7 @@ std::string to_text(const CaptureOptions& options, const capture::RecordingStatu
 
 void run_capture(const CaptureOptions& options, const CommandContext& context) {
   if (options.list) return list_cameras(context);
-  if (options.session.empty()) throw CLI::RequiredError("--output");
+  if (options.session.empty()) throw UsageError("--output is required");
   CaptureOptions watched = options;
   watched.fit.preview = !options.headless;
   capture::V4l2CameraOptions wish = options.camera;
@@ -116,7 +116,7 @@ void capture_session(std::unique_ptr<capture::Camera> camera, const CaptureOptio
                      const CommandContext& context) {
   // Start recording.
   ReplayOptions fit = options.fit;
-  fit.session.folder = options.session;
+  fit.session = options.session;
   if (fit.output.empty()) fit.output = options.session / "model.glb";
   const capture::SessionSetup setup = read_setup(options);
   const capture::CameraDescription description = camera->description();
@@ -133,7 +133,7 @@ void capture_session(std::unique_ptr<capture::Camera> camera, const CaptureOptio
   const LiveCamera live{[&window_closed] { window_closed = true; }};
   FitOutcome outcome;
   try {
-    outcome = fit_session(fit, session, std::nullopt, recording.frames(), context, &live);
+    outcome = fit_session(fit, session, recording.frames(), context, &live);
   } catch (const core::Error&) {
     recording.stop();
     if (const auto fault = recording.status().camera_fault) throw core::Error(*fault);
@@ -146,16 +146,16 @@ void capture_session(std::unique_ptr<capture::Camera> camera, const CaptureOptio
   if (status.disk_fault) throw core::Error(*status.disk_fault);
 }
 
-void add_capture_command(CLI::App& program, CommandContext& context) {
+void add_capture_command(CommandLine& program, CommandContext& context) {
   auto options = std::make_shared<CaptureOptions>();
-  CLI::App* command =
-      program.add_subcommand("capture", "Record an object live and turn it into a light field");
-  command->footer(
+  Command command =
+      program.command("capture", "Record an object live and turn it into a light field");
+  command.example(
       "Example: walk round the object until Ctrl-C, with the board of an earlier session:\n"
       "  sheen capture /dev/video0 -o knot --like sample_data/glossy --headless");
-  add_capture_options(*command, *options);
-  add_common_options(*command, context);
-  command->callback([options, &context] { run_capture(*options, context); });
+  add_capture_options(command, *options);
+  add_common_options(command, context);
+  command.action([options, &context] { run_capture(*options, context); });
 }
 
 }  // namespace sheen::app

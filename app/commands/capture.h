@@ -10,7 +10,7 @@
 namespace sheen::app {
 
 /// `sheen capture DEVICE -o SESSION`: records a session and fits it meanwhile.
-void add_capture_command(CLI::App& program, CommandContext& context);
+void add_capture_command(CommandLine& program, CommandContext& context);
 
 /// Records `camera` as the options say and fits every recorded image; those that the fit had no
 /// time for follow at the end, so that the model is that of a replay of the recording. Publishes

@@ -8,7 +8,6 @@
 #include <Eigen/SVD>
 
 #include <charconv>
-#include <map>
 #include <utility>
 
 namespace sheen::app {
@@ -21,12 +20,12 @@ std::optional<int> parse_int(std::string_view text) {
   return number;
 }
 
-void add_camera_options(CLI::App& command, CaptureOptions& options) {
+void add_camera_options(Command command, CaptureOptions& options) {
   using capture::PixelFormat;
-  command.add_option("device", options.camera.device, "Camera")->capture_default_str();
-  command.add_flag("--list", options.list, "List cameras, their modes and controls");
+  command.option("device", options.camera.device, "Camera").show_default();
+  command.flag("--list", options.list, "List cameras, their modes and controls");
   command
-      .add_option_function<std::string>(
+      .option(
           "--size",
           [&options](const std::string& text) {
             const std::size_t x = text.find('x');
@@ -34,23 +33,19 @@ void add_camera_options(CLI::App& command, CaptureOptions& options) {
             const auto height = x == std::string::npos
                                     ? std::nullopt
                                     : parse_int(std::string_view(text).substr(x + 1));
-            if (!width || !height) throw CLI::ValidationError("--size", "write it like 1280x720");
+            if (!width || !height) throw UsageError("--size: write it like 1280x720");
             options.camera.mode.size = capture::ImageSize{*width, *height};
           },
           "Image size (default: that of the camera file)")
-      ->type_name("WxH");
+      .type("WxH");
+  command.option("--fps", options.camera.mode.fps, "Frame rate (default: the camera's largest)")
+      .positive();
+  command.choice<std::optional<PixelFormat>>(
+      "--format", options.camera.mode.format,
+      {{"mjpeg", PixelFormat::mjpeg}, {"yuyv", PixelFormat::yuyv}, {"nv12", PixelFormat::nv12}},
+      "How the camera packs images (default: the fastest)");
   command
-      .add_option("--fps", options.camera.mode.fps, "Frame rate (default: the camera's largest)")
-      ->check(CLI::PositiveNumber);
-  const std::map<std::string, PixelFormat> formats{
-      {"mjpeg", PixelFormat::mjpeg}, {"yuyv", PixelFormat::yuyv}, {"nv12", PixelFormat::nv12}};
-  command
-      .add_option("--format", options.camera.mode.format,
-                  "How the camera packs images (default: the fastest)")
-      ->transform(CLI::CheckedTransformer(formats, CLI::ignore_case).description(""))
-      ->type_name("mjpeg|yuyv|nv12");
-  command
-      .add_option_function<std::vector<std::string>>(
+      .option(
           "--control",
           [&options](const std::vector<std::string>& settings) {
             for (const std::string& setting : settings) {
@@ -58,14 +53,14 @@ void add_camera_options(CLI::App& command, CaptureOptions& options) {
               const auto value = equals == std::string::npos
                                      ? std::nullopt
                                      : parse_int(std::string_view(setting).substr(equals + 1));
-              if (!value) throw CLI::ValidationError("--control", "write it like gain=10");
+              if (!value) throw UsageError("--control: write it like gain=10");
               options.camera.controls.push_back({setting.substr(0, equals), *value});
             }
           },
           "Set a control of the camera first, as --list names it")
-      ->type_name("NAME=VALUE");
-  command.add_flag("!--no-lock", options.camera.lock_automatics,
-                   "Leave exposure, gain, white balance and focus to the camera");
+      .type("NAME=VALUE");
+  command.flag("!--no-lock", options.camera.lock_automatics,
+               "Leave exposure, gain, white balance and focus to the camera");
 }
 
 Eigen::Isometry3d transform_of(const std::vector<double>& numbers) {
@@ -87,30 +82,27 @@ Eigen::Isometry3d transform_of(const std::vector<double>& numbers) {
 
 }  // namespace
 
-void add_capture_options(CLI::App& command, CaptureOptions& options) {
+void add_capture_options(Command command, CaptureOptions& options) {
   add_camera_options(command, options);
-  command.add_option("-o,--output", options.session, "Session folder to record")
-      ->type_name("SESSION");
+  command.option("-o,--output", options.session, "Session folder to record").type("SESSION");
   command
-      .add_option("--like", options.like,
-                  "Take camera file, board, mesh and the object's place from this session")
-      ->type_name("SESSION");
-  command.add_option("--camera", options.camera_file, "Camera file, from sheen calibrate")
-      ->type_name("FILE");
-  command.add_option("--board", options.board, "board.yaml: where the tags lie")->type_name("FILE");
-  command.add_option("--mesh", options.mesh, "The object, in metres")->type_name("FILE");
+      .option("--like", options.like,
+              "Take camera file, board, mesh and the object's place from this session")
+      .type("SESSION");
+  command.option("--camera", options.camera_file, "Camera file, from sheen calibrate").type("FILE");
+  command.option("--board", options.board, "board.yaml: where the tags lie").type("FILE");
+  command.option("--mesh", options.mesh, "The object, in metres").type("FILE");
   command
-      .add_option("--T-stage-object", options.board_from_object,
-                  "Where the object stands: 16 numbers row by row (default: as in --like, else the "
-                  "board's own frame)")
-      ->expected(16);
-  command.add_option("--frames", options.frames, "Record so many images (default: until Ctrl-C)")
-      ->check(CLI::PositiveNumber);
-  command.add_option("--seconds", options.seconds, "Record so long")->check(CLI::PositiveNumber);
-  command.add_flag("--headless", options.headless, "Without a window");
-  command
-      .add_option("--model", options.fit.output, "Model to write (default: model.glb in SESSION)")
-      ->type_name("MODEL.glb");
+      .option("--T-stage-object", options.board_from_object,
+              "Where the object stands: 16 numbers row by row (default: as in --like, else the "
+              "board's own frame)")
+      .numbers(16);
+  command.option("--frames", options.frames, "Record so many images (default: until Ctrl-C)")
+      .positive();
+  command.option("--seconds", options.seconds, "Record so long").positive();
+  command.flag("--headless", options.headless, "Without a window");
+  command.option("--model", options.fit.output, "Model to write (default: model.glb in SESSION)")
+      .type("MODEL.glb");
   add_model_options(command, options.fit);
 }
 

@@ -5,8 +5,6 @@
 #include "capture/session/session_recorder.h"
 #include "capture/source/v4l2_camera.h"
 
-#include <CLI/CLI.hpp>
-
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -28,7 +26,7 @@ struct CaptureOptions {
   ReplayOptions fit;                               ///< what becomes of the frames
 };
 
-void add_capture_options(CLI::App& command, CaptureOptions& options);
+void add_capture_options(Command command, CaptureOptions& options);
 
 /// What the recording will say besides its frames. Throws core::Error (bad_input) when something is
 /// neither given nor in `like`.

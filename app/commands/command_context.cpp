@@ -3,29 +3,13 @@
 
 #include "core/diagnostics/error.h"
 #include "core/files/staged_output.h"
+#include "core/files/write_file.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <fstream>
 #include <thread>
 
 namespace sheen::app {
-namespace {
-
-void write_report(const std::filesystem::path& path, const std::string& text) {
-  core::StagedOutput output(path);
-  std::ofstream file(output.path(), std::ios::binary);
-  file << text << '\n';
-  file.close();
-  if (!file) {
-    throw core::Error(core::Error::Kind::run_failed, path, "could not be written",
-                      "check free space and permissions");
-  }
-  output.commit();
-}
-
-}  // namespace
-
 void CommandContext::note(const std::string& line) const {
   if (!quiet) std::fprintf(stderr, "%s\n", line.c_str());
 }
@@ -42,7 +26,7 @@ void CommandContext::publish(const nlohmann::ordered_json& document,
   // Paths may hold bytes that are no UTF-8; they must not cost the whole report.
   const std::string json_text =
       document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  if (!report_path.empty()) write_report(report_path, json_text);
+  if (!report_path.empty()) core::write_file(report_path, json_text + "\n");
   const std::string& answer = json ? json_text : text;
   std::fputs(answer.c_str(), stdout);
   if (!answer.empty() && answer.back() != '\n') std::fputc('\n', stdout);
@@ -52,17 +36,17 @@ void CommandContext::publish(const nlohmann::ordered_json& document,
   }
 }
 
-void add_common_options(CLI::App& command, CommandContext& context) {
+void add_common_options(Command command, CommandContext& context) {
   context.threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   command
-      .add_option("--threads", context.threads,
-                  "Worker threads; results do not depend on it (default: all cores)")
-      ->check(CLI::Range(1, 256))
-      ->type_name("N");
-  command.add_flag("--quiet", context.quiet, "No progress and no notes on stderr");
-  command.add_flag("--json", context.json, "Print one JSON document instead of text");
-  command.add_option("--report", context.report_path, "Also write the JSON document to this file")
-      ->type_name("FILE");
+      .option("--threads", context.threads,
+              "Worker threads; results do not depend on it (default: all cores)")
+      .range(1, 256)
+      .type("N");
+  command.flag("--quiet", context.quiet, "No progress and no notes on stderr");
+  command.flag("--json", context.json, "Print one JSON document instead of text");
+  command.option("--report", context.report_path, "Also write the JSON document to this file")
+      .type("FILE");
 }
 
 }  // namespace sheen::app

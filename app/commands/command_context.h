@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "app/command_line/command_line.h"
 #include "app/progress.h"
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
@@ -26,8 +26,8 @@ struct CommandContext {
   /// One line on stderr, unless --quiet.
   void note(const std::string& line) const;
 
-  /// Throws core::Error (bad_input) when the report or one of `outputs` (empty paths: not asked for)
-  /// cannot be written: before the long work, not after it.
+  /// Throws core::Error (bad_input) when the report or one of `outputs` (empty paths: not asked
+  /// for) cannot be written: before the long work, not after it.
   void check_outputs(const std::vector<std::filesystem::path>& outputs) const;
 
   /// Ends a command: `document` to --report and, with --json, to stdout; else `text` to stdout.
@@ -35,6 +35,6 @@ struct CommandContext {
 };
 
 /// --threads, --quiet, --json, --report: the same words for every subcommand.
-void add_common_options(CLI::App& command, CommandContext& context);
+void add_common_options(Command command, CommandContext& context);
 
 }  // namespace sheen::app

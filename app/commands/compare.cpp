@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/compare.h"
 
-#include "app/commands/session_options.h"
-#include "app/comparison/comparison_files.h"
-#include "app/comparison/comparison_tables.h"
-#include "app/comparison/paper_comparison.h"
+#include "app/commands/frame_options.h"
+#include "app/commands/paper_comparison.h"
 #include "app/interrupt.h"
 #include "core/diagnostics/error.h"
 #include "core/files/staged_output.h"
+#include "evaluation/comparison/advice.h"
+#include "evaluation/comparison/comparison_files.h"
+#include "evaluation/comparison/comparison_tables.h"
+#include "evaluation/comparison/measure_candidate.h"
+#include "evaluation/comparison/observations.h"
 
 #include <fmt/format.h>
 
@@ -19,37 +22,41 @@ namespace {
 constexpr int kDefaultHoldOut = 5;
 constexpr int kLargestHoldOut = 1'000'000;
 
+using evaluation::Candidate;
+using evaluation::Comparison;
+using evaluation::Observations;
+
 struct CompareOptions {
   std::vector<std::filesystem::path> folders;
   std::filesystem::path output;
   std::vector<std::string> only;  ///< names of candidates; empty: all
-  SessionOptions session;         ///< `folder` is set for each of `folders` in turn
-  bool paper = false;             ///< the paper's experiments instead of sessions
+  pipeline::FrameChoice frames;
+  bool paper = false;  ///< the paper's experiments instead of sessions
 };
 
 /// Counts sessions and candidates as they are done: a session's observations are one step, each
-/// candidate on it another.
-class Steps {
+/// candidate on it another. What goes on within a step is shown beside it.
+class Steps final : public pipeline::ProgressSink {
  public:
   Steps(const CommandContext& context, std::size_t sessions, std::size_t candidates)
-      : progress_(context.progress("comparing", static_cast<int>(sessions * (candidates + 1)))) {}
+      : bar_(context.progress("comparing", static_cast<int>(sessions * (candidates + 1)))) {}
 
-  void doing(const std::string& what) { progress_.show(done_, what); }
-  void done(const std::string& what) { progress_.show(++done_, what); }
+  void begin(const std::string& what) {
+    what_ = what;
+    bar_.show(done_, what_);
+  }
+  void end() { bar_.show(++done_, what_); }
+
+  void progress(const pipeline::StepProgress& step) override {
+    throw_if_interrupted();
+    bar_.show(done_, fmt::format("{}, {} {}", what_, step.step, step.done));
+  }
 
  private:
-  Progress progress_;
+  Progress bar_;
+  std::string what_;
   int done_ = 0;
 };
-
-Observations observe(const SessionOptions& options, const std::string& name, int threads,
-                     Steps& steps) {
-  auto observations = observe_session(options, threads, [&](int frames_read) {
-    steps.doing(fmt::format("{}: frame {}", name, frames_read));
-  });
-  steps.done(fmt::format("{}: {} frames observed", name, observations.views.size()));
-  return observations;
-}
 
 void compare_on(const Observations& observations, const std::string& session,
                 const std::vector<Candidate>& candidates, render::Context& gl,
@@ -57,36 +64,37 @@ void compare_on(const Observations& observations, const std::string& session,
                 Comparison& comparison) {
   const std::size_t first_row = comparison.rows.size();
   for (const Candidate& candidate : candidates) {
-    throw_if_interrupted();
-    steps.doing(session + ": " + candidate.name);
+    steps.begin(session + ": " + candidate.name);
     try {
-      comparison.rows.push_back({session,
-                                 candidate,
-                                 measure_candidate(candidate, observations, gl, scratch, threads),
-                                 {}});
+      comparison.rows.push_back(
+          {session,
+           candidate,
+           evaluation::measure_candidate(candidate, observations, gl, scratch, threads, steps),
+           {}});
     } catch (const core::Error& error) {
       // A model too large for the driver must not take hours of other figures with it.
       if (error.kind() != core::Error::Kind::run_failed) throw;
       comparison.left_out.push_back({session, candidate.name, error.what()});
     }
-    steps.done(session + ": " + candidate.name);
+    steps.end();
   }
-  mark_fronts(std::span(comparison.rows).subspan(first_row));
+  evaluation::mark_fronts(std::span(comparison.rows).subspan(first_row));
 }
 
 Comparison compare_sessions(const CompareOptions& options, const CommandContext& context,
                             const std::filesystem::path& scratch) {
-  const std::vector<Candidate> candidates = candidates_named(options.only);
-  const std::vector<std::string> names = session_names(options.folders);
+  const std::vector<Candidate> candidates = evaluation::candidates_named(options.only);
+  const std::vector<std::string> names = evaluation::session_names(options.folders);
   const auto gl = render::make_osmesa_context();
   Comparison comparison;
   Steps steps(context, names.size(), candidates.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
-    SessionOptions session = options.session;
-    session.folder = options.folders[i];
-    const Observations observations = observe(session, names[i], context.threads, steps);
+    steps.begin(names[i]);
+    const Observations observations =
+        evaluation::observe_session(options.folders[i], options.frames, context.threads, steps);
+    steps.end();
     comparison.sessions.push_back({.name = names[i],
-                                   .folder = session.folder.string(),
+                                   .folder = options.folders[i].string(),
                                    .fitted_frames = observations.views.size(),
                                    .held_out_views = observations.held_out.size(),
                                    .has_own_held_out = observations.has_own_held_out});
@@ -98,7 +106,7 @@ Comparison compare_sessions(const CompareOptions& options, const CommandContext&
 
 void check_was_measured(const Comparison& comparison) {
   if (!comparison.rows.empty()) return;
-  const LeftOutCandidate& first = comparison.left_out.front();
+  const evaluation::LeftOutCandidate& first = comparison.left_out.front();
   throw core::Error(core::Error::Kind::run_failed, first.session, "no candidate could be measured",
                     first.reason);
 }
@@ -131,10 +139,11 @@ void run_compare(const CompareOptions& options, const CommandContext& context) {
   check_was_measured(comparison);
 
   // Write and tell.
-  const auto advice = advise(averages(comparison), comparison.sessions.size());
+  const auto advice =
+      evaluation::advise(evaluation::averages(comparison), comparison.sessions.size());
   const nlohmann::ordered_json document = to_json(comparison, advice);
-  const ComparisonFiles files =
-      write_comparison(options.output, staging.path(), to_csv(comparison), document);
+  const evaluation::ComparisonFiles files =
+      evaluation::write_comparison(options.output, staging.path(), to_csv(comparison), document);
   for (const std::string& note : files.notes) context.note("note: " + note);
   std::string text = to_text(comparison);
   for (const auto& path : files.written) text += "written  " + path.string() + "\n";
@@ -144,44 +153,42 @@ void run_compare(const CompareOptions& options, const CommandContext& context) {
 
 }  // namespace
 
-void add_compare_command(CLI::App& program, CommandContext& context) {
+void add_compare_command(CommandLine& program, CommandContext& context) {
   auto options = std::make_shared<CompareOptions>();
-  options->session.hold_out = kDefaultHoldOut;
-  CLI::App* command = program.add_subcommand(
+  options->frames.hold_out = kDefaultHoldOut;
+  Command command = program.command(
       "compare", "Measure every representation on the same recordings: accuracy, time, bytes");
-  command->footer(
+  command.example(
       "All candidates take the same samples and are drawn on the same views that none has seen:\n"
       "SESSION/held_out where there is one, else every N-th frame. DIR receives compare.csv,\n"
       "charts (PNG, SVG) and compare.html, a page that needs no network.\n"
       "Example:\n  sheen compare sample_data/glossy -o comparison --only mean,sh3,quadtree");
-  CLI::Option* sessions =
-      command->add_option("sessions", options->folders, "Session folders")->type_name("SESSION...");
-  const CLI::Option* paper =
+  Option sessions =
+      command.option("sessions", options->folders, "Session folders").type("SESSION...");
+  const Option paper =
       command
-          ->add_flag("--paper", options->paper,
-                     "Instead of sessions: the paper's own experiments, beside its figures")
-          ->excludes(sessions);
-  command->parse_complete_callback([sessions, paper] {
-    if (sessions->count() + paper->count() == 0) throw CLI::RequiredError("sessions");
+          .flag("--paper", options->paper,
+                "Instead of sessions: the paper's own experiments, beside its figures")
+          .excludes(sessions);
+  command.after_parsing([sessions, paper] {
+    if (!sessions.is_given() && !paper.is_given()) throw UsageError("sessions is required");
   });
-  command->add_option("-o,--output", options->output, "Folder to write to")
-      ->required()
-      ->type_name("DIR");
+  command.option("-o,--output", options->output, "Folder to write to").required().type("DIR");
   command
-      ->add_option("--only", options->only,
-                   fmt::format("Only these of {}", fmt::join(candidate_names(), ", ")))
-      ->delimiter(',')
-      ->check(CLI::IsMember(candidate_names()).description(""))
-      ->type_name("NAME,NAME");
+      .option("--only", options->only,
+              fmt::format("Only these of {}", fmt::join(evaluation::candidate_names(), ", ")))
+      .separated_by(',')
+      .one_of(evaluation::candidate_names())
+      .type("NAME,NAME");
   command
-      ->add_option("--hold-out", options->session.hold_out,
-                   "Keep every N-th frame out of the fits and measure on those")
-      ->check(CLI::Range(2, kLargestHoldOut).description(""))
-      ->type_name("N")
-      ->capture_default_str();
-  add_session_options(*command, options->session);
-  add_common_options(*command, context);
-  command->callback([options, &context] { run_compare(*options, context); });
+      .option("--hold-out", options->frames.hold_out,
+              "Keep every N-th frame out of the fits and measure on those")
+      .range(2, kLargestHoldOut)
+      .type("N")
+      .show_default();
+  add_frame_options(command, options->frames);
+  add_common_options(command, context);
+  command.action([options, &context] { run_compare(*options, context); });
 }
 
 }  // namespace sheen::app

@@ -6,6 +6,6 @@
 namespace sheen::app {
 
 /// `sheen compare SESSION... -o DIR`: every representation on the same observations.
-void add_compare_command(CLI::App& program, CommandContext& context);
+void add_compare_command(CommandLine& program, CommandContext& context);
 
 }  // namespace sheen::app

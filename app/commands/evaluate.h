@@ -6,6 +6,6 @@
 namespace sheen::app {
 
 /// `sheen evaluate MODEL.glb SESSION`: renders every posed view and compares with its image.
-void add_evaluate_command(CLI::App& program, CommandContext& context);
+void add_evaluate_command(CommandLine& program, CommandContext& context);
 
 }  // namespace sheen::app

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/info.h"
 
-#include "app/pipeline/session_parts.h"
+#include "core/mesh/bounds.h"
 #include "fitting/model_file/model_file.h"
+#include "fitting/patch_light_field.h"
+#include "pipeline/session_parts.h"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -13,9 +15,7 @@ namespace sheen::app {
 namespace {
 
 nlohmann::ordered_json describe(const core::Mesh& mesh) {
-  Eigen::AlignedBox3f bounds;
-  for (const auto& position : mesh.positions) bounds.extend(position);
-  const Eigen::Vector3f size_mm = bounds.sizes() * 1000;
+  const Eigen::Vector3f size_mm = core::bounds_of(mesh).sizes() * 1000;
   return {{"vertices", mesh.positions.size()},
           {"triangles", mesh.triangles.size()},
           {"size_mm", {size_mm.x(), size_mm.y(), size_mm.z()}}};
@@ -37,7 +37,7 @@ nlohmann::ordered_json describe_session(const std::filesystem::path& folder) {
     document["board"] = {{"family", board.family}, {"tags", board.tags.size()}};
   }
   if (session.poses) document["poses"] = capture::read_trajectory(*session.poses).entries().size();
-  document["mesh"] = describe(read_object_mesh(session.mesh));
+  document["mesh"] = describe(pipeline::read_object_mesh(session.mesh));
   document["warnings"] = session.warnings;
   return document;
 }
@@ -45,17 +45,20 @@ nlohmann::ordered_json describe_session(const std::filesystem::path& folder) {
 nlohmann::ordered_json describe_model(const std::filesystem::path& path) {
   const fitting::Model model = fitting::read_model(path);
   const fitting::LightField& light_field = *model.light_field;
-  const auto& observed = light_field.observed();
-  const std::size_t patches = light_field.patch_count();
-  return {{"kind", "model"},
-          {"representation", light_field.representation()},
-          {"patches", patches},
-          {"patches_observed", std::count(observed.begin(), observed.end(), std::uint8_t{1})},
-          {"coefficients", light_field.coefficient_count()},
-          {"coefficients_per_patch", static_cast<double>(light_field.coefficient_count()) /
-                                         static_cast<double>(std::max<std::size_t>(1, patches))},
-          {"bytes", std::filesystem::file_size(path)},
-          {"mesh", describe(model.mesh)}};
+  nlohmann::ordered_json document{{"kind", "model"},
+                                  {"representation", light_field.representation()}};
+  if (const auto* const patches = fitting::as_patches(light_field)) {
+    const auto& observed = patches->observed();
+    document["patches"] = patches->patch_count();
+    document["patches_observed"] = std::count(observed.begin(), observed.end(), std::uint8_t{1});
+    document["coefficients_per_patch"] =
+        static_cast<double>(light_field.coefficient_count()) /
+        static_cast<double>(std::max<std::size_t>(1, patches->patch_count()));
+  }
+  document["coefficients"] = light_field.coefficient_count();
+  document["bytes"] = std::filesystem::file_size(path);
+  document["mesh"] = describe(model.mesh);
+  return document;
 }
 
 /// One "name  value" line per entry; nested entries on one line.
@@ -70,12 +73,12 @@ std::string to_text(const nlohmann::ordered_json& document) {
 
 }  // namespace
 
-void add_info_command(CLI::App& program, CommandContext& context) {
+void add_info_command(CommandLine& program, CommandContext& context) {
   auto path = std::make_shared<std::filesystem::path>();
-  CLI::App* command = program.add_subcommand("info", "Tell what a session or a model holds");
-  command->add_option("path", *path, "Session folder or model file")->required();
-  add_common_options(*command, context);
-  command->callback([path, &context] {
+  Command command = program.command("info", "Tell what a session or a model holds");
+  command.option("path", *path, "Session folder or model file").required();
+  add_common_options(command, context);
+  command.action([path, &context] {
     const nlohmann::ordered_json document =
         std::filesystem::is_directory(*path) ? describe_session(*path) : describe_model(*path);
     context.publish(document, to_text(document));

@@ -6,6 +6,6 @@
 namespace sheen::app {
 
 /// `sheen info PATH`: what a session or a model holds.
-void add_info_command(CLI::App& program, CommandContext& context);
+void add_info_command(CommandLine& program, CommandContext& context);
 
 }  // namespace sheen::app

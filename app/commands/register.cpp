@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/register.h"
 
-#include "app/commands/session_options.h"
+#include "app/commands/frame_options.h"
 #include "app/interrupt.h"
+#include "app/terminal_sink.h"
 #include "capture/registration/placement.h"
 #include "capture/registration/registration.h"
 #include "capture/registration/registration_image.h"
+#include "capture/registration/upright_turn.h"
 #include "capture/registration/view_choice.h"
-#include "capture/session/session_edit.h"
+#include "capture/session/keep_before.h"
+#include "capture/session/session.h"
+#include "capture/session/session_file.h"
 #include "core/diagnostics/error.h"
 #include "core/image/write_image.h"
+#include "core/mesh/bounds.h"
+#include "pipeline/pose_frames.h"
+#include "pipeline/session_parts.h"
 
 #include <fmt/format.h>
 
@@ -20,13 +27,11 @@ namespace sheen::app {
 namespace {
 
 constexpr std::size_t kImageViews = 6;
-constexpr std::size_t kTrialViews = 10;
-constexpr int kTurns = 12;              // first guesses of an upright object about z
-constexpr double kTrialSearch = 0.35;   // of the radius: half-way to the next guess, and more
 constexpr double kTrustedShare = 0.75;  // of the outline on edges: recordings that fit reach 0.9
 
 struct RegisterOptions {
-  SessionOptions session;
+  std::filesystem::path session;
+  pipeline::FrameChoice frames;
   std::filesystem::path output;
   std::filesystem::path pairs;
   std::filesystem::path image;
@@ -41,24 +46,13 @@ struct Views {
   std::vector<int> frame_indices;
 };
 
-/// Every `n`-th so that `most` are left.
-template <typename T>
-std::vector<T> thin_out(const std::vector<T>& all, std::size_t most) {
-  const std::size_t count = std::min(all.size(), most);
-  std::vector<T> some;
-  for (std::size_t i = 0; i < count; ++i)
-    some.push_back(all[(2 * i + 1) * all.size() / (2 * count)]);
-  return some;
-}
-
 std::vector<capture::ChosenView> choose_frames(const capture::Session& session,
                                                const RegisterOptions& options,
                                                const Eigen::Vector3d& centre,
                                                const CommandContext& context) {
-  Progress progress = context.progress("posing", 0);
+  TerminalSink sink(context);
   std::vector<capture::PosedFrameIndex> posed;
-  for (const PosedFrame& frame :
-       pose_frames(session, options.session, [&](int read) { progress.show(read); })) {
+  for (const pipeline::PosedFrame& frame : pipeline::pose_frames(session, options.frames, sink)) {
     posed.push_back({frame.index, frame.camera_from_board});
   }
   return capture::choose_views(posed, session.camera, centre, options.views);
@@ -67,7 +61,7 @@ std::vector<capture::ChosenView> choose_frames(const capture::Session& session,
 Views read_views(const capture::Session& session, const RegisterOptions& options,
                  const std::vector<capture::ChosenView>& chosen) {
   Views result;
-  const auto frames = capture::open_frames(session, options.session.start, options.session.end);
+  const auto frames = capture::open_frames(session, options.frames.start, options.frames.end);
   auto next = chosen.begin();
   while (next != chosen.end()) {
     const auto frame = frames->next();
@@ -79,33 +73,6 @@ Views read_views(const capture::Session& session, const RegisterOptions& options
     ++next;
   }
   return result;
-}
-
-Eigen::AlignedBox3d bounds_of(const core::Mesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3f& p : mesh.positions) box.extend(p.cast<double>());
-  return box;
-}
-
-/// The turn about z whose outline finds most edges.
-Eigen::Isometry3d best_turn(const capture::Session& session, const core::Mesh& mesh,
-                            const Views& views) {
-  const auto some = thin_out(views.views, kTrialViews);
-  const double search_m = kTrialSearch * bounds_of(mesh).diagonal().norm() / 2;
-  Eigen::Isometry3d best = capture::place_upright(mesh, 0);
-  double best_score = 0;
-  for (int turn = 0; turn < kTurns; ++turn) {
-    throw_if_interrupted();
-    const auto guess = capture::place_upright(mesh, 2 * std::numbers::pi * turn / kTurns);
-    const auto found =
-        capture::register_object(mesh, session.camera, some, guess, {.search_m = search_m});
-    if (!found) continue;
-    const double score = found->matched_share / (1 + found->residual_px);
-    if (score <= best_score) continue;
-    best_score = score;
-    best = found->board_from_object;
-  }
-  return best;
 }
 
 std::string describe(const capture::Registration& found) {
@@ -143,10 +110,11 @@ void write_image(const RegisterOptions& options, const capture::Session& session
     labels.push_back(
         fmt::format("frame {}{}", views.frame_indices[v], found.agrees[v] ? "" : ", set aside"));
   }
-  core::write_image(
-      options.image,
-      capture::draw_registration(mesh, session.camera, thin_out(views.views, kImageViews),
-                                 thin_out(labels, kImageViews), before, found.board_from_object));
+  core::write_image(options.image,
+                    capture::draw_registration(mesh, session.camera,
+                                               capture::thinned_out(views.views, kImageViews),
+                                               capture::thinned_out(labels, kImageViews), before,
+                                               found.board_from_object));
 }
 
 /// Where the search begins: picked pairs, upright on the board, or what the session says.
@@ -176,22 +144,25 @@ std::string save(const std::filesystem::path& session_file, const std::filesyste
 }
 
 void run_register(const RegisterOptions& options, const CommandContext& context) {
-  const auto session_file = options.session.folder / "session.json";
+  const auto session_file = options.session / "session.json";
   const auto output = options.output.empty() ? session_file : options.output;
   context.check_outputs({output, options.image});
-  const capture::Session session = capture::open_session(options.session.folder);
+  const capture::Session session = capture::open_session(options.session);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
-  const core::Mesh mesh = read_object_mesh(session.mesh);
+  const core::Mesh mesh = pipeline::read_object_mesh(session.mesh);
 
   // Guess, then align.
   Eigen::Isometry3d guess = first_guess(options, session, mesh, context);
-  const auto chosen = choose_frames(session, options, guess * bounds_of(mesh).center(), context);
+  const auto chosen = choose_frames(session, options,
+                                    guess * core::bounds_of(mesh).center().cast<double>(), context);
   const Views views = read_views(session, options, chosen);
-  if (options.pairs.empty() && options.guess == "upright") guess = best_turn(session, mesh, views);
+  if (options.pairs.empty() && options.guess == "upright") {
+    guess = capture::find_upright_turn(mesh, session.camera, views.views, throw_if_interrupted);
+  }
   const auto found = capture::register_object(mesh, session.camera, views.views, guess,
                                               {.search_m = options.search_mm / 1000});
   if (!found) {
-    throw core::bad_input(options.session.folder, "the object's outline finds too few edges",
+    throw core::bad_input(options.session, "the object's outline finds too few edges",
                           "give a better start by --pairs or a larger --search-mm");
   }
 
@@ -207,49 +178,47 @@ void run_register(const RegisterOptions& options, const CommandContext& context)
   context.publish(to_json(*found), describe(*found) + lines);
 }
 
-void add_register_options(CLI::App& command, RegisterOptions& options) {
-  command.add_option("session", options.session.folder, "Session folder")->required();
+void add_register_options(Command command, RegisterOptions& options) {
+  command.option("session", options.session, "Session folder").required();
   command
-      .add_option("-o,--output", options.output,
-                  "Write the changed session.json here (default: into the session)")
-      ->type_name("FILE");
-  command.add_option("--guess", options.guess, "Where to start: session or upright")
-      ->check(CLI::IsMember({"session", "upright"}))
-      ->capture_default_str();
-  command.add_option("--pairs", options.pairs, "Start from three or more picked pairs of points")
-      ->type_name("FILE");
+      .option("-o,--output", options.output,
+              "Write the changed session.json here (default: into the session)")
+      .type("FILE");
+  command.option("--guess", options.guess, "Where to start: session or upright")
+      .one_of({"session", "upright"})
+      .show_default();
+  command.option("--pairs", options.pairs, "Start from three or more picked pairs of points")
+      .type("FILE");
+  command.option("--search-mm", options.search_mm, "How far the outline may be off at the start")
+      .range(1.0, 200.0)
+      .type("MM")
+      .show_default();
+  command.option("--views", options.views, "Frames to look at, spread over the recording")
+      .range(3, 1000)
+      .type("N")
+      .show_default();
   command
-      .add_option("--search-mm", options.search_mm, "How far the outline may be off at the start")
-      ->check(CLI::Range(1.0, 200.0).description(""))
-      ->type_name("MM")
-      ->capture_default_str();
-  command.add_option("--views", options.views, "Frames to look at, spread over the recording")
-      ->check(CLI::Range(3, 1000).description(""))
-      ->type_name("N")
-      ->capture_default_str();
-  command
-      .add_option("--picture", options.image,
-                  "Also draw the outline over six frames, before and after")
-      ->type_name("FILE.png");
+      .option("--picture", options.image, "Also draw the outline over six frames, before and after")
+      .type("FILE.png");
 }
 
 }  // namespace
 
-void add_register_command(CLI::App& program, CommandContext& context) {
+void add_register_command(CommandLine& program, CommandContext& context) {
   auto options = std::make_shared<RegisterOptions>();
-  CLI::App* command = program.add_subcommand(
+  Command command = program.command(
       "register", "Find where the mesh stands on the board: lay its outline on the images' edges");
-  command->footer(
+  command.example(
       "Examples:\n"
       "  sheen register SESSION --picture check.png      improve session.json's T_stage_object\n"
       "  sheen register SESSION --guess upright          z up, near the board's centre, any turn\n"
       "  sheen register SESSION --pairs picked.txt       start from picked points; one a line:\n"
       "                                                  x y z in the mesh  x y z on the board\n"
       "The session.json it replaces is kept as session.before-register.json.");
-  add_register_options(*command, *options);
-  add_session_options(*command, options->session);
-  add_common_options(*command, context);
-  command->callback([options, &context] { run_register(*options, context); });
+  add_register_options(command, *options);
+  add_frame_options(command, options->frames);
+  add_common_options(command, context);
+  command.action([options, &context] { run_register(*options, context); });
 }
 
 }  // namespace sheen::app

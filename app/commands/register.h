@@ -6,6 +6,6 @@
 namespace sheen::app {
 
 /// `sheen register SESSION`: where the mesh stands on the board, from the images.
-void add_register_command(CLI::App& program, CommandContext& context);
+void add_register_command(CommandLine& program, CommandContext& context);
 
 }  // namespace sheen::app

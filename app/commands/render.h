@@ -6,6 +6,6 @@
 namespace sheen::app {
 
 /// `sheen render MODEL.glb --views SESSION -o DIR`: images from every view of a session.
-void add_render_command(CLI::App& program, CommandContext& context);
+void add_render_command(CommandLine& program, CommandContext& context);
 
 }  // namespace sheen::app

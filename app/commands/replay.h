@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "app/command_line/command_line.h"
 #include "app/commands/command_context.h"
 #include "app/commands/replay_options.h"
-#include "capture/pose/board_refinement.h"
 #include "capture/session/session.h"
 #include "capture/source/frame_source.h"
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 
 namespace sheen::app {
@@ -26,14 +25,13 @@ struct LiveCamera {
 };
 
 /// Fits `frames` of a session, saves the model and measures it on held-out frames, with
-/// options.preview in a window on the calling thread, which must be the main one. `refinement`
-/// replaces the session's board. `camera` is null for a recording.
+/// options.preview in a window on the calling thread, which must be the main one. `camera` is null
+/// for a recording.
 FitOutcome fit_session(const ReplayOptions& options, const capture::Session& session,
-                       const std::optional<capture::BoardRefinement>& refinement,
                        std::unique_ptr<capture::FrameSource> frames, const CommandContext& context,
                        const LiveCamera* camera = nullptr);
 
 /// `sheen replay SESSION -o MODEL.glb`: a recording becomes a light field.
-void add_replay_command(CLI::App& program, CommandContext& context);
+void add_replay_command(CommandLine& program, CommandContext& context);
 
 }  // namespace sheen::app

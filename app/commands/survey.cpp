@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/survey.h"
 
-#include "app/pipeline/session_board.h"
+#include "app/terminal_sink.h"
 #include "capture/calibration/camera_file.h"
 #include "capture/pose/board_change.h"
-#include "capture/session/session_edit.h"
+#include "capture/session/keep_before.h"
 #include "core/diagnostics/error.h"
 #include "core/image/write_image.h"
+#include "pipeline/session_board.h"
 
 #include <fmt/format.h>
 
@@ -114,12 +115,9 @@ void run_survey(SurveyOptions options, const CommandContext& context) {
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
   const auto lens =
       options.camera_output.empty() ? capture::LensRefinement::off : capture::LensRefinement::on;
-  std::optional<capture::BoardRefinement> found;
-  {
-    Progress progress = context.progress("surveying", 0);
-    found = refine_session_board(
-        session, options.start, options.end, [&](int read) { progress.show(read); }, lens);
-  }
+  TerminalSink sink(context);
+  const auto found =
+      pipeline::refine_session_board(session, options.start, options.end, sink, lens);
   if (!found) {
     throw core::bad_input(options.session, "its images do not tell where the tags lie",
                           "record at least three views with two or more tags each");
@@ -144,36 +142,32 @@ void run_survey(SurveyOptions options, const CommandContext& context) {
 
 }  // namespace
 
-void add_survey_command(CLI::App& program, CommandContext& context) {
+void add_survey_command(CommandLine& program, CommandContext& context) {
   auto options = std::make_shared<SurveyOptions>();
-  CLI::App* command = program.add_subcommand(
+  Command command = program.command(
       "survey", "Find where the tags really lie: paper curls, tags are stuck by hand");
-  command->footer(
+  command.example(
       "Examples:\n"
       "  sheen survey SESSION                          write SESSION/board.surveyed.yaml and "
       "compare\n"
       "  sheen survey SESSION -o SESSION/board.yaml    use it; the old one stays as\n"
       "                                                board.before-survey.yaml\n"
       "  sheen survey SESSION --refine-camera SESSION/camera.yaml    the lens, too");
-  command->add_option("session", options->session, "Session folder")->required();
+  command.option("session", options->session, "Session folder").required();
   command
-      ->add_option("-o,--output", options->output,
-                   "Board to write (default: board.surveyed.yaml in the session)")
-      ->type_name("FILE.yaml");
+      .option("-o,--output", options->output,
+              "Board to write (default: board.surveyed.yaml in the session)")
+      .type("FILE.yaml");
   command
-      ->add_option("--refine-camera", options->camera_output,
-                   "Refine the lens, too, and write it here; wants views from many tilts")
-      ->type_name("FILE.yaml");
-  command
-      ->add_option("--picture", options->image, "Also draw the board from above, before and after")
-      ->type_name("FILE.png");
-  command->add_option("--start", options->start, "First frame")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--end", options->end, "One past the last frame (default: all)")
-      ->check(CLI::PositiveNumber);
-  add_common_options(*command, context);
-  command->callback([options, &context] { run_survey(*options, context); });
+      .option("--refine-camera", options->camera_output,
+              "Refine the lens, too, and write it here; wants views from many tilts")
+      .type("FILE.yaml");
+  command.option("--picture", options->image, "Also draw the board from above, before and after")
+      .type("FILE.png");
+  command.option("--start", options->start, "First frame").not_negative().show_default();
+  command.option("--end", options->end, "One past the last frame (default: all)").positive();
+  add_common_options(command, context);
+  command.action([options, &context] { run_survey(*options, context); });
 }
 
 }  // namespace sheen::app

@@ -6,6 +6,6 @@
 namespace sheen::app {
 
 /// `sheen survey SESSION -o board.yaml`: where the tags really lie, from the images.
-void add_survey_command(CLI::App& program, CommandContext& context);
+void add_survey_command(CommandLine& program, CommandContext& context);
 
 }  // namespace sheen::app

@@ -50,7 +50,7 @@ void run_synth(SynthOptions& options, const CommandContext& context) {
   try {
     session.check();
   } catch (const std::invalid_argument& error) {
-    throw CLI::ValidationError(error.what());
+    throw UsageError(error.what());
   }
 
   context.check_outputs({});
@@ -71,73 +71,71 @@ void run_synth(SynthOptions& options, const CommandContext& context) {
                   size_text(session), session.held_out, options.folder.string()));
 }
 
-void add_image_options(CLI::App& command, SynthOptions& options) {
+void add_image_options(Command command, SynthOptions& options) {
   synthetic::SyntheticOptions& session = options.session;
   options.size = size_text(session);
-  command.add_option("--size", options.size, "Image size in pixels")
-      ->check([&session](const std::string& text) { return parse_size(text, session); })
-      ->type_name("WxH")
-      ->capture_default_str();
-  command.add_option("--frames", session.frames, "Frames of the recording")
-      ->check(CLI::Range(2, 100'000).description(""))
-      ->type_name("N")
-      ->capture_default_str();
+  command.option("--size", options.size, "Image size in pixels")
+      .check([&session](const std::string& text) { return parse_size(text, session); })
+      .type("WxH")
+      .show_default();
+  command.option("--frames", session.frames, "Frames of the recording")
+      .range(2, 100'000)
+      .type("N")
+      .show_default();
   command
-      .add_option("--held-out", session.held_out,
-                  "Noise-free views apart from the recording, in held_out/; 0: none")
-      ->check(CLI::Range(0, 10'000).description(""))
-      ->type_name("N")
-      ->capture_default_str();
+      .option("--held-out", session.held_out,
+              "Noise-free views apart from the recording, in held_out/; 0: none")
+      .range(0, 10'000)
+      .type("N")
+      .show_default();
   command
-      .add_option("--samples", session.samples,
-                  "Rays per pixel of a frame; held-out views take four times as many")
-      ->check(CLI::Range(1, 256).description(""))
-      ->type_name("N")
-      ->capture_default_str();
-  command.add_option("--quality", session.jpeg_quality, "JPEG quality of the video, 1 to 100")
-      ->check(CLI::Range(1, 100).description(""))
-      ->type_name("Q")
-      ->capture_default_str();
+      .option("--samples", session.samples,
+              "Rays per pixel of a frame; held-out views take four times as many")
+      .range(1, 256)
+      .type("N")
+      .show_default();
+  command.option("--quality", session.jpeg_quality, "JPEG quality of the video, 1 to 100")
+      .range(1, 100)
+      .type("Q")
+      .show_default();
 }
 
 }  // namespace
 
-void add_synth_command(CLI::App& program, CommandContext& context) {
+void add_synth_command(CommandLine& program, CommandContext& context) {
   auto options = std::make_shared<SynthOptions>();
   synthetic::SyntheticOptions& session = options->session;
-  CLI::App* command = program.add_subcommand(
+  Command command = program.command(
       "synth", "Make a synthetic session: a known object, light and camera on a board of tags");
-  command->footer("Example:\n  sheen synth glossy -o session --frames 120");
+  command.example("Example:\n  sheen synth glossy -o session --frames 120");
   const std::vector<std::string> names(synthetic::kSceneNames.begin(),
                                        synthetic::kSceneNames.end());
-  command->add_option("scene", options->scene, "How the object's enamel shines")
-      ->required()
-      ->check(CLI::IsMember(names));
-  command->add_option("-o,--output", options->folder, "Session folder to write")
-      ->required()
-      ->type_name("SESSION");
-  command->add_option("--vertices", session.vertices, "Vertices of the object, about")
-      ->check(CLI::Range(500, 2'000'000).description(""))
-      ->type_name("N")
-      ->capture_default_str();
-  CLI::Option* mesh_vertices =
+  command.option("scene", options->scene, "How the object's enamel shines")
+      .required()
+      .one_of(names);
+  command.option("-o,--output", options->folder, "Session folder to write")
+      .required()
+      .type("SESSION");
+  command.option("--vertices", session.vertices, "Vertices of the object, about")
+      .range(500, 2'000'000)
+      .type("N")
+      .show_default();
+  Option mesh_vertices =
       command
-          ->add_option("--mesh-vertices", session.mesh_vertices,
-                       "Vertices of the session's mesh of the object, about; 0: as photographed")
-          ->check(CLI::Range(0, 2'000'000).description(""))
-          ->type_name("N")
-          ->capture_default_str();
+          .option("--mesh-vertices", session.mesh_vertices,
+                  "Vertices of the session's mesh of the object, about; 0: as photographed")
+          .range(0, 2'000'000)
+          .type("N")
+          .show_default();
   command
-      ->add_option("--mesh", options->mesh,
-                   "Put this mesh on the board instead (metres, z up; PLY, OBJ or GLB)")
-      ->excludes(mesh_vertices)
-      ->type_name("FILE");
-  add_image_options(*command, *options);
-  command->add_option("--seed", session.seed, "Seed of path, tremor and noise")
-      ->type_name("N")
-      ->capture_default_str();
-  add_common_options(*command, context);
-  command->callback([options, &context] { run_synth(*options, context); });
+      .option("--mesh", options->mesh,
+              "Put this mesh on the board instead (metres, z up; PLY, OBJ or GLB)")
+      .excludes(mesh_vertices)
+      .type("FILE");
+  add_image_options(command, *options);
+  command.option("--seed", session.seed, "Seed of path, tremor and noise").type("N").show_default();
+  add_common_options(command, context);
+  command.action([options, &context] { run_synth(*options, context); });
 }
 
 }  // namespace sheen::app

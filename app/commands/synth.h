@@ -6,6 +6,6 @@
 namespace sheen::app {
 
 /// `sheen synth NAME -o SESSION`: a synthetic session with known truth.
-void add_synth_command(CLI::App& program, CommandContext& context);
+void add_synth_command(CommandLine& program, CommandContext& context);
 
 }  // namespace sheen::app

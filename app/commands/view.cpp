@@ -3,6 +3,7 @@
 
 #include "app/preview/run_preview.h"
 #include "fitting/model_file/model_file.h"
+#include "fitting/patch_light_field.h"
 
 #include <fmt/format.h>
 
@@ -18,19 +19,23 @@ struct ViewOptions {
 };
 
 ModelFacts facts_of(const ViewOptions& options, const fitting::LightField& light_field) {
-  const auto patches = static_cast<double>(light_field.patch_count());
-  const auto& observed = light_field.observed();
-  const auto seen =
-      static_cast<double>(std::count(observed.begin(), observed.end(), std::uint8_t{1}));
-  return {
-      {"file", options.model.filename().string()},
-      {"representation", std::string(light_field.representation())},
-      {"patches", fmt::format("{}", light_field.patch_count())},
-      {"seen", fmt::format("{:.0f} %", 100 * seen / patches)},
-      {"numbers a patch",
-       fmt::format("{:.1f}", static_cast<double>(light_field.coefficient_count()) / patches)},
-      {"size", fmt::format("{:.1f} MB",
-                           1e-6 * static_cast<double>(std::filesystem::file_size(options.model)))}};
+  const auto numbers = static_cast<double>(light_field.coefficient_count());
+  ModelFacts facts{{"file", options.model.filename().string()},
+                   {"representation", std::string(light_field.representation())}};
+  if (const auto* const model = fitting::as_patches(light_field)) {
+    const auto patches = static_cast<double>(model->patch_count());
+    const auto& observed = model->observed();
+    const auto seen =
+        static_cast<double>(std::count(observed.begin(), observed.end(), std::uint8_t{1}));
+    facts.emplace_back("patches", fmt::format("{:.0f}", patches));
+    facts.emplace_back("seen", fmt::format("{:.0f} %", 100 * seen / patches));
+    facts.emplace_back("numbers a patch", fmt::format("{:.1f}", numbers / patches));
+  } else {
+    facts.emplace_back("numbers", fmt::format("{:.0f}", numbers));
+  }
+  const auto bytes = static_cast<double>(std::filesystem::file_size(options.model));
+  facts.emplace_back("size", fmt::format("{:.1f} MB", 1e-6 * bytes));
+  return facts;
 }
 
 void run_view(const ViewOptions& options) {
@@ -45,18 +50,18 @@ void run_view(const ViewOptions& options) {
 
 }  // namespace
 
-void add_view_command(CLI::App& program, CommandContext& context) {
+void add_view_command(CommandLine& program, CommandContext& context) {
   auto options = std::make_shared<ViewOptions>();
-  CLI::App* command = program.add_subcommand("view", "Look at a light field in a window");
-  command->footer(
+  Command command = program.command("view", "Look at a light field in a window");
+  command.example(
       "Left drag turns, right drag moves, the wheel comes nearer; H shows all keys.\n"
       "Example:\n  sheen view model.glb");
-  command->add_option("model", options->model, "Model file")->required()->type_name("MODEL.glb");
-  command->add_option("--snapshots", options->snapshots, "Folder for snapshots (F12)")
-      ->type_name("DIR")
-      ->capture_default_str();
-  add_common_options(*command, context);
-  command->callback([options] { run_view(*options); });
+  command.option("model", options->model, "Model file").required().type("MODEL.glb");
+  command.option("--snapshots", options->snapshots, "Folder for snapshots (F12)")
+      .type("DIR")
+      .show_default();
+  add_common_options(command, context);
+  command.action([options] { run_view(*options); });
 }
 
 }  // namespace sheen::app

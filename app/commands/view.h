@@ -5,6 +5,6 @@
 
 namespace sheen::app {
 
-void add_view_command(CLI::App& program, CommandContext& context);
+void add_view_command(CommandLine& program, CommandContext& context);
 
 }  // namespace sheen::app

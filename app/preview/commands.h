@@ -9,7 +9,7 @@
 namespace sheen::app {
 
 /// What a person can ask of the window.
-enum class Command {
+enum class ViewCommand {
   show_radiance,
   show_needs_views,
   show_misfit,
@@ -30,7 +30,7 @@ enum class Command {
 struct KeyBinding {
   int key;
   int modifiers;
-  Command command;
+  ViewCommand command;
   const char* key_text;
   const char* meaning;
   bool live_only;  ///< without meaning for a finished model
@@ -39,6 +39,6 @@ struct KeyBinding {
 /// All of them, in the order in which the help shows them.
 std::span<const KeyBinding> key_bindings();
 
-std::optional<Command> command_of(const KeyPress& press);
+std::optional<ViewCommand> command_of(const KeyPress& press);
 
 }  // namespace sheen::app

@@ -36,9 +36,11 @@ bool LiveSession::admit(const core::SampleBatch& batch) {
     const std::lock_guard lock(mutex_);
     if (parts_.is_camera && requests_.paused) return false;
   }
+  // Only patches can be compared with samples; other light fields take every view.
   const auto verdict = parts_.model.with([&](const fitting::Fitter& fitter) {
+    const auto* const patches = fitting::as_patches(fitter.light_field());
     const std::lock_guard lock(mutex_);
-    return score_.judge(batch, fitter.light_field());
+    return patches != nullptr ? score_.judge(batch, *patches) : guidance::FrameVerdict::fine;
   });
   const std::lock_guard lock(mutex_);
   const bool doubted = verdict != guidance::FrameVerdict::fine;
@@ -49,13 +51,15 @@ bool LiveSession::admit(const core::SampleBatch& batch) {
   return admitted_;
 }
 
-void LiveSession::on_frame(const TrackedFrame& tracked, const FrameStatistics& statistics) {
+void LiveSession::on_frame(const pipeline::TrackedFrame& tracked,
+                           const pipeline::FrameStatistics& statistics) {
   publish(tracked, statistics);
   wake();
   obey();
 }
 
-void LiveSession::publish(const TrackedFrame& tracked, const FrameStatistics& statistics) {
+void LiveSession::publish(const pipeline::TrackedFrame& tracked,
+                          const pipeline::FrameStatistics& statistics) {
   const std::lock_guard lock(mutex_);
   status_.frames_read = statistics.frames_read;
   status_.frames_fitted = static_cast<int>(views_.size()) + (admitted_ ? 1 : 0);
@@ -66,7 +70,7 @@ void LiveSession::publish(const TrackedFrame& tracked, const FrameStatistics& st
     status_.trouble = reason_in_words(name_of(*rejection));
   } else {
     // The pose that was fitted with: refinement may have moved it.
-    const PosedFrame& posed = statistics.posed.back();
+    const pipeline::PosedFrame& posed = statistics.posed.back();
     status_.camera_from_object = posed.camera_from_board * parts_.board_from_object;
     if (std::exchange(admitted_, false)) {
       views_.push_back({posed.time_s, *status_.camera_from_object});
@@ -143,7 +147,9 @@ void LiveSession::undo(double seconds) {
   parts_.model.with([&](const fitting::Fitter&) {
     parts_.history.undo(views,
                         [&](const core::SampleBatch& batch, const fitting::LightField& model) {
-                          score.judge(batch, model);
+                          if (const auto* const patches = fitting::as_patches(model)) {
+                            score.judge(batch, *patches);
+                          }
                           score.note(batch, 0);
                         });
     if (parts_.baseline != nullptr) {
@@ -204,13 +210,13 @@ std::optional<PlannerAdvice> LiveSession::take_advice() {
 
 guidance::PatchKnowledge LiveSession::knowledge_of(std::size_t patch_idx) const {
   const std::lock_guard lock(mutex_);
-  return score_.need.patches()[patch_idx];
+  return score_.utility.patches()[patch_idx];
 }
 
 std::optional<PlannerInput> LiveSession::what_is_known() const {
   const std::lock_guard lock(mutex_);
   if (views_.empty()) return std::nullopt;
-  return PlannerInput{score_.need, core::eye_in_object(views_.back().camera_from_object)};
+  return PlannerInput{score_.utility, core::eye_in_object(views_.back().camera_from_object)};
 }
 
 void LiveSession::take(PlannerAdvice advice) {

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "app/pipeline/frame_statistics.h"
-#include "app/pipeline/pose_stage.h"
-#include "app/pipeline/shared_model.h"
 #include "app/preview/live_status.h"
 #include "app/preview/next_best_view_planner.h"
 #include "core/geometry/camera.h"
 #include "fitting/guidance/capture_score.h"
 #include "fitting/undo/undoable_fitter.h"
+#include "pipeline/reconstruct.h"
 
 #include <condition_variable>
 #include <deque>
@@ -25,10 +23,10 @@ namespace sheen::app {
 /// Between a pipeline that fits frames and a window that shows it. The pipeline tells and obeys
 /// between frames; the window looks and asks. Neither waits for the other, except that a paused
 /// pipeline waits to go on.
-class LiveSession {
+class LiveSession final : public pipeline::FrameListener {
  public:
   struct Parts {
-    SharedModel& model;  ///< over `history`
+    pipeline::SharedModel& model;  ///< over `history`
     fitting::UndoableFitter& history;
     fitting::UndoableFitter* baseline;  ///< is undone with it; may be null
     const core::Mesh& mesh;
@@ -47,10 +45,11 @@ class LiveSession {
 
   // The pipeline's side, on the thread that fits.
 
-  /// Judges samples that are about to be taken in (ModelStage::Parts::admit).
-  bool admit(const core::SampleBatch& batch);
+  /// Judges samples that are about to be taken in .
+  bool admit(const core::SampleBatch& batch) override;
   /// After every frame: tells the window, waits while paused, does what was asked for.
-  void on_frame(const TrackedFrame& tracked, const FrameStatistics& statistics);
+  void on_frame(const pipeline::TrackedFrame& tracked,
+                const pipeline::FrameStatistics& statistics) override;
   /// The last frame was fitted; requests are no longer heard.
   void finish();
 
@@ -102,7 +101,7 @@ class LiveSession {
     bool closed = false;
   };
 
-  void publish(const TrackedFrame& tracked, const FrameStatistics& statistics);
+  void publish(const pipeline::TrackedFrame& tracked, const pipeline::FrameStatistics& statistics);
   void note_times(const core::StageTimes& times);
   void obey();
   void undo(double seconds);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/preview/next_best_view_planner.h"
 
+#include "core/mesh/bounds.h"
 #include "core/visibility/ray_caster.h"
 #include "fitting/guidance/candidate_views.h"
 
@@ -26,32 +27,27 @@ constexpr float kFullMisfit = 0.12f;
 
 /// Scores in [0, 1]. Views: deviation to expect from missing views, as a share of what a patch that
 /// nobody has seen has. Misfit: deviation in directions that were seen.
-PatchScores scores_of(const guidance::ViewUtility& need,
+PatchScores scores_of(const guidance::ViewUtility& utility,
                       const std::vector<float>& unseen_direction_error,
                       const std::vector<guidance::DirectionCells>& reachable) {
   PatchScores scores;
   const std::size_t count = reachable.size();
   scores.needs_views.resize(count);
   scores.misfit.resize(count);
-  const float typical = need.typical_unseen_direction_error();
+  const float typical = utility.typical_unseen_direction_error();
   for (std::size_t i = 0; i < count; ++i) {
-    const bool unseen = need.patches()[i].samples == 0;
+    const bool unseen = utility.patches()[i].samples == 0;
     scores.needs_views[i] =
-        unseen ? 1.0f
-               : std::min(1.0f,
-                          std::sqrt(guidance::missing_variance(need.patches()[i].seen, reachable[i],
-                                                               unseen_direction_error[i]) /
-                                    typical));
+        unseen
+            ? 1.0f
+            : std::min(1.0f,
+                       std::sqrt(guidance::missing_variance(utility.patches()[i].seen, reachable[i],
+                                                            unseen_direction_error[i]) /
+                                 typical));
     scores.misfit[i] =
-        unseen ? 0.0f : std::min(1.0f, std::sqrt(need.seen_direction_error(i)) / kFullMisfit);
+        unseen ? 0.0f : std::min(1.0f, std::sqrt(utility.seen_direction_error(i)) / kFullMisfit);
   }
   return scores;
-}
-
-Eigen::Vector3f centre_of(const core::Mesh& mesh) {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& position : mesh.positions) box.extend(position);
-  return box.center();
 }
 
 }  // namespace
@@ -71,7 +67,7 @@ void NextBestViewPlanner::run(const std::stop_token& stop) {
   while (!(input = parts_.ask())) {
     if (!rest(stop, kShortestRest)) return;
   }
-  const Eigen::Vector3f centre = centre_of(parts_.mesh);
+  const Eigen::Vector3f centre = core::bounds_of(parts_.mesh).center();
   const float distance_m = (input->eye - centre).norm();
 
   // Look once from everywhere.
@@ -97,12 +93,12 @@ void NextBestViewPlanner::run(const std::stop_token& stop) {
       continue;
     }
     const auto unseen_direction_error =
-        guidance::smooth_unseen_direction_errors(input->need, neighbours);
-    const auto gains = views.gains(input->need.patches(), unseen_direction_error, area);
+        guidance::smooth_unseen_direction_errors(input->utility, neighbours);
+    const auto gains = views.gains(input->utility.patches(), unseen_direction_error, area);
     const auto next = guidance::next_best_view(views.places(), gains, centre, input->eye);
-    PlannerAdvice advice{scores_of(input->need, unseen_direction_error, *reachable),
-                         guidance::coverage(input->need.patches(), *reachable, area), std::nullopt,
-                         reachable};
+    PlannerAdvice advice{scores_of(input->utility, unseen_direction_error, *reachable),
+                         guidance::coverage(input->utility.patches(), *reachable, area),
+                         std::nullopt, reachable};
     if (next) advice.next_best_view = views.places()[*next];
     parts_.tell(std::move(advice));
     rest(stop, std::max<std::chrono::nanoseconds>(kRestPerThought * (Clock::now() - begin),

@@ -21,7 +21,7 @@ namespace sheen::app {
 
 /// What guidance needs to know, and what it says.
 struct PlannerInput {
-  fitting::guidance::ViewUtility need;
+  fitting::guidance::ViewUtility utility;
   Eigen::Vector3f eye;  ///< present camera, object frame, metres
 };
 struct PlannerAdvice {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/preview/object_painter.h"
 
+#include "core/mesh/bounds.h"
 #include "render/preview/clay_shader.h"
 #include "render/preview/score_shader.h"
 #include "render/surface/patch_buffer.h"
@@ -11,7 +12,8 @@
 namespace sheen::app {
 namespace {
 
-constexpr std::size_t kPieceOfPatches = 256;  // sent between two looks at the budget
+constexpr std::size_t kPiece = 256;  // elements sent between two looks at the budget
+constexpr int kThreads = 1;          // the fit has the others
 
 // Views: from quiet teal to red. Misfit: from grey to violet, so that nobody takes one for the
 // other.
@@ -36,44 +38,44 @@ std::array<std::array<float, 3>, 3> scale_of(Layer layer) {
   return scale;
 }
 
-ObjectPainter::ObjectPainter(const render::gl::Functions& gl, const core::Mesh& mesh)
-    : gl_(gl),
+ObjectPainter::ObjectPainter(render::Context& context, const render::gl::Functions& gl,
+                             const core::Mesh& mesh)
+    : context_(context),
+      gl_(gl),
       mesh_(mesh),
+      bounds_(core::bounds_of(mesh).cast<double>()),
       scores_{std::vector<float>(mesh.positions.size(), 1.0f),
-              std::vector<float>(mesh.positions.size(), 0.0f)},
-      is_changed_(mesh.positions.size(), 0) {
-  for (const Eigen::Vector3f& position : mesh.positions) bounds_.extend(position.cast<double>());
-}
+              std::vector<float>(mesh.positions.size(), 0.0f)} {}
 
 void ObjectPainter::show(const fitting::LightField& light_field) {
-  layers_[slot_of(Layer::radiance)] = std::make_unique<render::SurfaceLayer>(
-      gl_, mesh_, render::make_patch_shader(gl_, mesh_, light_field));
-  std::ranges::fill(is_changed_, std::uint8_t{0});
+  radiance_ = render::make_renderer(context_, mesh_, light_field, kThreads);
+  is_changed_.assign(light_field.element_count(), 0);
   changed_count_ = 0;
+  cursor_ = 0;
   ++version_;
-  draws_from_model_ = !render::has_patch_shader(light_field);
 }
 
 void ObjectPainter::note_changes(const fitting::ModelUpdate& update) {
-  for (const std::uint32_t patch_idx : update.patches) {
-    changed_count_ += is_changed_[patch_idx] == 0;
-    is_changed_[patch_idx] = 1;
+  if (update.elements.empty()) return;
+  if (update.elements.back() >= is_changed_.size()) is_changed_.resize(update.elements.back() + 1);
+  for (const std::uint32_t element : update.elements) {
+    changed_count_ += is_changed_[element] == 0;
+    is_changed_[element] = 1;
   }
 }
 
 std::size_t ObjectPainter::send_changes(std::size_t budget_bytes) {
-  auto& radiance = layers_[slot_of(Layer::radiance)];
   std::size_t sent = 0;
-  while (radiance && changed_count_ > 0 && sent < budget_bytes) {
+  while (radiance_ && changed_count_ > 0 && sent < budget_bytes) {
     piece_.clear();
     if (cursor_ >= is_changed_.size()) cursor_ = 0;
-    for (; cursor_ < is_changed_.size() && piece_.size() < kPieceOfPatches; ++cursor_) {
+    for (; cursor_ < is_changed_.size() && piece_.size() < kPiece; ++cursor_) {
       if (std::exchange(is_changed_[cursor_], std::uint8_t{0}) != 0) {
         piece_.push_back(static_cast<std::uint32_t>(cursor_));
       }
     }
     changed_count_ -= piece_.size();
-    if (!piece_.empty()) sent += radiance->upload(piece_);
+    if (!piece_.empty()) sent += radiance_->upload(piece_);
   }
   version_ += sent > 0;
   return sent;
@@ -91,8 +93,11 @@ void ObjectPainter::set_scores(PatchScores scores) {
 void ObjectPainter::draw(Layer layer, render::gl::OffscreenTarget& target,
                          const core::CameraModel& camera,
                          const Eigen::Isometry3d& camera_from_object) {
-  const bool nothing_yet = layer == Layer::radiance && !layers_[slot_of(layer)];
-  painted(nothing_yet ? Layer::mesh : layer).draw(target, camera, camera_from_object);
+  if (layer == Layer::radiance && radiance_) {
+    radiance_->draw(target, camera, camera_from_object);
+    return;
+  }
+  painted(layer == Layer::radiance ? Layer::mesh : layer).draw(target, camera, camera_from_object);
 }
 
 render::SurfaceLayer& ObjectPainter::painted(Layer layer) {

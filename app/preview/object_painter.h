@@ -5,7 +5,8 @@
 #include "core/mesh/mesh.h"
 #include "fitting/fitter.h"
 #include "fitting/light_field.h"
-#include "render/preview/surface_layer.h"
+#include "render/renderer.h"
+#include "render/surface/surface_layer.h"
 
 #include <Eigen/Geometry>
 
@@ -29,19 +30,21 @@ std::array<std::array<float, 3>, 3> scale_of(Layer layer);
 /// for them. All calls with the context current, on one thread.
 class ObjectPainter {
  public:
-  /// `gl` and `mesh` outlive it.
-  ObjectPainter(const render::gl::Functions& gl, const core::Mesh& mesh);
+  /// All outlive it; `gl` is of `context`.
+  ObjectPainter(render::Context& context, const render::gl::Functions& gl, const core::Mesh& mesh);
 
   /// Shows another light field from now on, all of it sent at once. It outlives its use here.
   void show(const fitting::LightField& light_field);
-  /// Patches of the light field that have changed since they were sent.
+  /// Elements of the light field that have changed since they were sent.
   void note_changes(const fitting::ModelUpdate& update);
-  /// Sends some of the changed patches, about `budget_bytes`; the next call goes on where this one
+  /// Sends some of the changed elements, about `budget_bytes`; the next call goes on where this one
   /// stopped. The light field must not change meanwhile. Returns the bytes sent.
   std::size_t send_changes(std::size_t budget_bytes);
   [[nodiscard]] bool has_changes() const { return changed_count_ > 0; }
   /// Whether drawing the radiance reads the light field, which then must not change meanwhile.
-  [[nodiscard]] bool draws_from_model() const { return draws_from_model_; }
+  [[nodiscard]] bool draws_from_model() const {
+    return radiance_ != nullptr && radiance_->reads_light_field();
+  }
 
   void set_scores(PatchScores scores);
 
@@ -59,14 +62,15 @@ class ObjectPainter {
  private:
   render::SurfaceLayer& painted(Layer layer);
 
+  render::Context& context_;
   const render::gl::Functions& gl_;
   const core::Mesh& mesh_;
   Eigen::AlignedBox3d bounds_;
   PatchScores scores_;
+  std::unique_ptr<render::Renderer> radiance_;  ///< null before a light field is shown
   std::array<std::unique_ptr<render::SurfaceLayer>, kLayers.size()> layers_;  ///< made at need
-  std::vector<std::uint8_t> is_changed_;
+  std::vector<std::uint8_t> is_changed_;                                      ///< by element
   std::size_t changed_count_ = 0;
-  bool draws_from_model_ = false;
   std::size_t version_ = 0;
   std::size_t cursor_ = 0;  ///< where the next piece begins
   std::vector<std::uint32_t> piece_;

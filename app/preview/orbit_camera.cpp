@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "app/preview/orbit_camera.h"
 
+#include "core/mesh/bounds.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -29,8 +31,7 @@ Eigen::Matrix3d upright_axes(const Eigen::Vector3d& up) {
 
 OrbitCamera::OrbitCamera(const core::Mesh& mesh, const Eigen::Vector3d& up, double room)
     : object_from_upright_(upright_axes(up)), room_(room) {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& position : mesh.positions) box.extend(position);
+  const Eigen::AlignedBox3f box = core::bounds_of(mesh);
   object_centre_ = box.center().cast<double>();
   float radius = 0;
   for (const Eigen::Vector3f& position : mesh.positions) {

@@ -4,6 +4,7 @@
 #include "core/diagnostics/error.h"
 #include "core/geometry/tangent_frame.h"
 #include "core/image/write_image.h"
+#include "fitting/patch_light_field.h"
 
 #include <fmt/format.h>
 
@@ -31,7 +32,7 @@ constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowF
 PreviewWindow::PreviewWindow(const PreviewSubject& subject)
     : subject_(subject),
       window_(subject.title, kWidth, kHeight),
-      painter_(window_.gl(), subject.mesh),
+      painter_(window_, window_.gl(), subject.mesh),
       model_view_(window_.gl(), subject.mesh, subject.up, subject.live != nullptr),
       camera_view_(window_.gl()) {
   if (subject_.light_field != nullptr) painter_.show(*subject_.light_field);
@@ -164,7 +165,8 @@ void PreviewWindow::show_panel(const ImVec2& corner, const ImVec2& size) {
   contents.live = subject_.live != nullptr ? &status_ : nullptr;
   contents.facts = subject_.facts;
   contents.drawing_ms = pace_.work_ms();
-  for (const Command command : show_side_panel(contents, state_, window_.fonts())) obey(command);
+  for (const ViewCommand command : show_side_panel(contents, state_, window_.fonts()))
+    obey(command);
   ImGui::End();
 }
 
@@ -178,8 +180,10 @@ std::optional<PatchNews> PreviewWindow::patch_news() {
       core::eye_in_object(model_view_.camera().camera_from_object()));
   news.present_uv = direction.uv;
   if (subject_.live == nullptr) {
-    news.colour_at = [this, idx = *vertex](const Eigen::Vector2f& uv) -> Eigen::Vector3f {
-      return subject_.light_field->evaluate(idx, uv).colour();
+    const auto* const patches = fitting::as_patches(*subject_.light_field);
+    if (patches == nullptr) return std::nullopt;
+    news.colour_at = [patches, idx = *vertex](const Eigen::Vector2f& uv) -> Eigen::Vector3f {
+      return patches->evaluate(idx, uv).colour();
     };
     return news;
   }
@@ -190,24 +194,24 @@ std::optional<PatchNews> PreviewWindow::patch_news() {
   return news;
 }
 
-void PreviewWindow::obey(Command command) {
+void PreviewWindow::obey(ViewCommand command) {
   switch (command) {
-    case Command::show_radiance:
+    case ViewCommand::show_radiance:
       state_.layer = Layer::radiance;
       break;
-    case Command::show_mesh:
+    case ViewCommand::show_mesh:
       state_.layer = Layer::mesh;
       break;
-    case Command::frame_object:
+    case ViewCommand::frame_object:
       model_view_.camera().frame();
       break;
-    case Command::snapshot:
+    case ViewCommand::snapshot:
       snapshot_wanted_ = true;
       break;
-    case Command::help:
+    case ViewCommand::help:
       state_.help = !state_.help;
       break;
-    case Command::quit:
+    case ViewCommand::quit:
       window_.close();
       break;
     default:
@@ -215,31 +219,31 @@ void PreviewWindow::obey(Command command) {
   }
 }
 
-void PreviewWindow::obey_session(Command command) {
+void PreviewWindow::obey_session(ViewCommand command) {
   note_.clear();
   switch (command) {
-    case Command::show_needs_views:
+    case ViewCommand::show_needs_views:
       state_.layer = Layer::needs_views;
       break;
-    case Command::show_misfit:
+    case ViewCommand::show_misfit:
       state_.layer = Layer::misfit;
       break;
-    case Command::swap_views:
+    case ViewCommand::swap_views:
       state_.camera_is_large = !state_.camera_is_large;
       break;
-    case Command::toggle_overlay:
+    case ViewCommand::toggle_overlay:
       state_.overlay = !state_.overlay;
       break;
-    case Command::toggle_path:
+    case ViewCommand::toggle_path:
       state_.path = !state_.path;
       break;
-    case Command::pause:
+    case ViewCommand::pause:
       subject_.live->set_paused(status_.phase != LiveStatus::Phase::paused);
       break;
-    case Command::undo:
+    case ViewCommand::undo:
       subject_.live->request_undo(kUndo_s);
       break;
-    case Command::save:
+    case ViewCommand::save:
       subject_.live->request_save();
       break;
     default:

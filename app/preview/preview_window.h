@@ -40,7 +40,7 @@ class PreviewWindow {
   bool redraw(double longest_wait_s);
 
   /// Does what a key or button would.
-  void obey(Command command);
+  void obey(ViewCommand command);
 
   [[nodiscard]] const ViewState& state() const { return state_; }
   [[nodiscard]] OrbitCamera& camera() { return model_view_.camera(); }
@@ -55,7 +55,7 @@ class PreviewWindow {
   void show_views(const ImVec2& size);
   void show_panel(const ImVec2& corner, const ImVec2& size);
   [[nodiscard]] std::optional<PatchNews> patch_news();
-  void obey_session(Command command);
+  void obey_session(ViewCommand command);
   void save_snapshot();
 
   PreviewSubject subject_;

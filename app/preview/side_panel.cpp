@@ -13,7 +13,7 @@
 namespace sheen::app {
 namespace {
 
-using Clicks = std::vector<Command>;
+using Clicks = std::vector<ViewCommand>;
 
 void text(const ImVec4& colour, const std::string& words) {
   ImGui::PushStyleColor(ImGuiCol_Text, colour);
@@ -49,13 +49,13 @@ void heading(const std::string& words) {
   ImGui::Dummy({0, 2});
 }
 
-void button(const char* label, Command command, float width, Clicks& clicks) {
+void button(const char* label, ViewCommand command, float width, Clicks& clicks) {
   if (ImGui::Button(label, {width, 0})) clicks.push_back(command);
 }
 
 void layer_choice(const ViewState& state, bool live, Clicks& clicks) {
-  constexpr std::array commands{Command::show_radiance, Command::show_needs_views,
-                                Command::show_misfit, Command::show_mesh};
+  constexpr std::array commands{ViewCommand::show_radiance, ViewCommand::show_needs_views,
+                                ViewCommand::show_misfit, ViewCommand::show_mesh};
   const float width = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
   int shown = 0;
   for (std::size_t i = 0; i < kLayers.size(); ++i) {
@@ -173,20 +173,20 @@ void live_buttons(const LiveStatus& live, Clicks& clicks) {
   const bool paused = live.phase == LiveStatus::Phase::paused;
   const float width = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
   ImGui::BeginDisabled(live.phase == LiveStatus::Phase::finished);
-  button(paused ? "Go on" : "Pause", Command::pause, width, clicks);
+  button(paused ? "Go on" : "Pause", ViewCommand::pause, width, clicks);
   ImGui::SameLine();
-  button("Undo 5 s", Command::undo, width, clicks);
-  button("Save", Command::save, width, clicks);
+  button("Undo 5 s", ViewCommand::undo, width, clicks);
+  button("Save", ViewCommand::save, width, clicks);
   ImGui::EndDisabled();
   ImGui::SameLine();
-  button("Snapshot", Command::snapshot, width, clicks);
+  button("Snapshot", ViewCommand::snapshot, width, clicks);
   if (!live.note.empty()) wrapped(theme::kQuiet, live.note);
 }
 
 }  // namespace
 
-std::vector<Command> show_side_panel(const PanelContents& contents, const ViewState& state,
-                                     const theme::Fonts& fonts) {
+std::vector<ViewCommand> show_side_panel(const PanelContents& contents, const ViewState& state,
+                                         const theme::Fonts& fonts) {
   Clicks clicks;
   const LiveStatus* const live = contents.live;
   if (live != nullptr) {

@@ -37,8 +37,8 @@ struct PanelContents {
 };
 
 /// Fills the present ImGui window; returns what was clicked.
-std::vector<Command> show_side_panel(const PanelContents& contents, const ViewState& state,
-                                     const theme::Fonts& fonts);
+std::vector<ViewCommand> show_side_panel(const PanelContents& contents, const ViewState& state,
+                                         const theme::Fonts& fonts);
 
 /// What is known of a patch, in a small window whose lower right corner is given.
 void show_patch_card(const PatchNews& patch, const ImVec2& lower_right);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "bench/guidance/guidance_study.h"
+#include "evaluation/guidance/guidance_study.h"
 
 #include <fmt/core.h>
 
 #include <vector>
 
 using namespace sheen::bench;
+using namespace sheen::evaluation;
 
 int main(int argc, char** argv) {
   return run_program(argc, argv, "Whether scores rank true errors and hints save frames",

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "bench/paper/paper_experiments.h"
+#include "evaluation/paper/paper_experiments.h"
 
 #include <fmt/core.h>
 
 #include <utility>
 
 using namespace sheen::bench;
+using namespace sheen::evaluation;
 
 int main(int argc, char** argv) {
   return run_program(

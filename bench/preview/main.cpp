@@ -2,9 +2,6 @@
 // How often the window is redrawn while a recording comes in at a camera's pace: one line of CSV
 // each for a view that is turned without pause, one that rests, and one turned after the recording
 // has ended. Needs a display.
-#include "app/pipeline/model_stage.h"
-#include "app/pipeline/pipeline.h"
-#include "app/pipeline/session_parts.h"
 #include "app/preview/live_session.h"
 #include "app/preview/preview_window.h"
 #include "bench/preview/camera_pace.h"
@@ -12,7 +9,10 @@
 #include "core/diagnostics/cpu_clock.h"
 #include "core/mesh/neighbours.h"
 #include "core/visibility/raster_visibility.h"
-#include "fitting/registry.h"
+#include "fitting/descriptor.h"
+#include "pipeline/model_stage.h"
+#include "pipeline/pipeline.h"
+#include "pipeline/session_parts.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>

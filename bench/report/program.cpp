@@ -10,8 +10,9 @@
 
 namespace sheen::bench {
 
-int run_program(int argc, char** argv, const std::string& description,
-                const std::function<void(const ProgramOptions&, const Progress&)>& body) {
+int run_program(
+    int argc, char** argv, const std::string& description,
+    const std::function<void(const ProgramOptions&, const evaluation::Progress&)>& body) {
   ProgramOptions options;
   CLI::App app(description);
   app.add_option("-o,--output", options.output, "Folder for CSV files")->capture_default_str();

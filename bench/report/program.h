@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "evaluation/report/progress.h"
+
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
 
 namespace sheen::bench {
-
-/// Gets one short line when a part of a study begins.
-using Progress = std::function<void(const std::string&)>;
 
 /// What every program of the bench understands.
 struct ProgramOptions {
@@ -20,7 +19,8 @@ struct ProgramOptions {
 
 /// Parses the arguments, calls `body` and turns exceptions into exit codes: 0 done, 1 failed while
 /// running, 2 bad arguments. Progress goes to stderr.
-int run_program(int argc, char** argv, const std::string& description,
-                const std::function<void(const ProgramOptions&, const Progress&)>& body);
+int run_program(
+    int argc, char** argv, const std::string& description,
+    const std::function<void(const ProgramOptions&, const evaluation::Progress&)>& body);
 
 }  // namespace sheen::bench

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "bench/scene/scene_study.h"
-#include "bench/scene/scene_tables.h"
+#include "evaluation/scene/scene_study.h"
+#include "evaluation/scene/scene_tables.h"
 
 #include <fmt/core.h>
 
 using namespace sheen::bench;
+using namespace sheen::evaluation;
 
 int main(int argc, char** argv) {
   return run_program(argc, argv, "How much model a whole object needs: 70 % matt, 30 % glossy",
@@ -27,6 +28,6 @@ int main(int argc, char** argv) {
                          fmt::print("{}\n", markdown(numbers_by_material(rows, environment)));
                        }
                        fmt::print("{}\n", markdown(busy_table(busy)));
-                       fmt::print("{}\n", markdown(scene_targets(rows, default_method_name())));
+                       fmt::print("{}\n", markdown(scene_targets(rows, kDefaultMethod)));
                      });
 }

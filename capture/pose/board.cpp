@@ -4,14 +4,14 @@
 #include "capture/files/text_file.h"
 #include "capture/pose/tag_family.h"
 #include "core/diagnostics/error.h"
-#include "core/files/staged_output.h"
+#include "core/files/write_file.h"
 
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
-#include <fstream>
 #include <iomanip>
 #include <locale>
+#include <sstream>
 
 namespace sheen::capture {
 namespace {
@@ -185,8 +185,7 @@ Board read_board(const std::filesystem::path& path) {
 }
 
 void write_board(const std::filesystem::path& path, const Board& board) {
-  core::StagedOutput output(path);
-  std::ofstream out(output.path());
+  std::ostringstream out;
   out.imbue(std::locale::classic());
   out << std::setprecision(10) << "tag_family: " << board.family << '\n';
   if (board.border_bits != 1) out << "border_bits: " << board.border_bits << '\n';
@@ -198,11 +197,7 @@ void write_board(const std::filesystem::path& path, const Board& board) {
         << ", z: " << t.z() << ", qw: " << q.w() << ", qx: " << q.x() << ", qy: " << q.y()
         << ", qz: " << q.z() << "}\n";
   }
-  out.close();
-  if (!out) {
-    throw core::Error(core::Error::Kind::run_failed, path, "cannot be written", "check the disk");
-  }
-  output.commit();
+  core::write_file(path, out.str());
 }
 
 }  // namespace sheen::capture

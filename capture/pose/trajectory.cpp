@@ -3,14 +3,13 @@
 
 #include "capture/files/text_file.h"
 #include "core/diagnostics/error.h"
-#include "core/files/staged_output.h"
+#include "core/files/write_file.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <iomanip>
 #include <sstream>
 #include <string_view>
@@ -115,8 +114,7 @@ Trajectory read_trajectory(const std::filesystem::path& path) {
 
 void write_trajectory(const std::filesystem::path& path,
                       const std::vector<Trajectory::Entry>& entries) {
-  core::StagedOutput output(path);
-  std::ofstream out(output.path());
+  std::ostringstream out;
   out.imbue(std::locale::classic());
   out << "# stamp tx ty tz qx qy qz qw (board_from_camera, metres)\n" << std::setprecision(12);
   for (const Trajectory::Entry& entry : entries) {
@@ -125,11 +123,7 @@ void write_trajectory(const std::filesystem::path& path,
     out << entry.stamp << ' ' << t.x() << ' ' << t.y() << ' ' << t.z() << ' ' << q.x() << ' '
         << q.y() << ' ' << q.z() << ' ' << q.w() << '\n';
   }
-  out.close();
-  if (!out) {
-    throw core::Error(core::Error::Kind::run_failed, path, "cannot be written", "check the disk");
-  }
-  output.commit();
+  core::write_file(path, out.str());
 }
 
 }  // namespace sheen::capture

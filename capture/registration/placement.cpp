@@ -3,6 +3,7 @@
 
 #include "capture/files/text_file.h"
 #include "core/diagnostics/error.h"
+#include "core/mesh/bounds.h"
 
 #include <Eigen/SVD>
 
@@ -81,8 +82,7 @@ PairPlacement place_by_pairs(const std::vector<PointPair>& pairs,
 }
 
 Eigen::Isometry3d place_upright(const core::Mesh& mesh, double turn_rad) {
-  Eigen::AlignedBox3d box;
-  for (const Eigen::Vector3f& p : mesh.positions) box.extend(p.cast<double>());
+  const Eigen::AlignedBox3d box = core::bounds_of(mesh).cast<double>();
   const Eigen::Vector3d foot(box.center().x(), box.center().y(), box.min().z());
   return Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()) * Eigen::Translation3d(-foot);
 }

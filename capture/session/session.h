@@ -29,6 +29,9 @@ struct Session {
   std::filesystem::path mesh;
   Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();
   std::vector<std::string> warnings;  ///< unknown keys, one line each
+
+  /// The camera that took a frame.
+  [[nodiscard]] const core::CameraModel& camera_of(int /*frame_index*/) const { return camera; }
 };
 
 /// Reads and checks session.json and camera.yaml. Throws core::Error (bad_input) with one clear

@@ -3,12 +3,10 @@
 
 #include "capture/calibration/camera_file.h"
 #include "capture/session/frame_stamps.h"
+#include "capture/session/session_file.h"
 #include "core/files/staged_output.h"
 
-#include <nlohmann/json.hpp>
-
 #include <chrono>
-#include <fstream>
 #include <span>
 #include <string_view>
 #include <system_error>
@@ -33,30 +31,6 @@ void copy_part(const fs::path& from, const fs::path& to) {
   if (fault) {
     throw core::bad_input(from, "cannot be copied into the session: " + fault.message(),
                           "check the file and the free space");
-  }
-}
-
-nlohmann::ordered_json transform_json(const Eigen::Isometry3d& transform) {
-  auto numbers = nlohmann::ordered_json::array();
-  for (Eigen::Index i = 0; i < 16; ++i) numbers.push_back(transform.matrix()(i / 4, i % 4));
-  return numbers;
-}
-
-void write_description(const fs::path& folder, const std::string& mesh,
-                       const Eigen::Isometry3d& board_from_object) {
-  const nlohmann::ordered_json description{
-      {"format", "sheen-session"},
-      {"version", 1},
-      {"frames", {{"video", "frames.avi"}, {"stamps", "frames.csv"}}},
-      {"camera", "camera.yaml"},
-      {"board", "board.yaml"},
-      {"object", {{"mesh", mesh}, {"T_stage_object", transform_json(board_from_object)}}}};
-  std::ofstream file(folder / "session.json", std::ios::binary);
-  file << description.dump(2) << '\n';
-  file.close();
-  if (!file) {
-    throw core::Error(core::Error::Kind::run_failed, folder, "cannot be written",
-                      "free disk space");
   }
 }
 
@@ -85,7 +59,11 @@ SessionRecorder::SessionRecorder(const fs::path& folder, const SessionSetup& set
   copy_part(setup.board, staged.path() / "board.yaml");
   const std::string mesh = "object" + setup.mesh.extension().string();
   copy_part(setup.mesh, staged.path() / mesh);
-  write_description(staged.path(), mesh, setup.board_from_object);
+  write_session_file(staged.path(), {.video = "frames.avi",
+                                     .stamps = "frames.csv",
+                                     .board = "board.yaml",
+                                     .mesh = mesh,
+                                     .board_from_object = setup.board_from_object});
   video_.emplace(staged.path() / "frames.avi",
                  ImageSize{setup.camera.width_px(), setup.camera.height_px()}, fps);
   stamps_ = FileHandle::create(staged.path() / "frames.csv");

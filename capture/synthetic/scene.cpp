@@ -4,6 +4,7 @@
 #include "capture/synthetic/baked_light.h"
 #include "capture/synthetic/board_print.h"
 #include "capture/synthetic/lighting.h"
+#include "core/mesh/bounds.h"
 #include "core/visibility/ray_caster.h"
 
 #include <Eigen/Core>
@@ -24,14 +25,8 @@ constexpr double kTurnRad = 0.35;          // of the object on the board
 constexpr float kPatternOfRadius = 0.18f;  // half a band over the radius of the object
 constexpr float kMeanBoardReflectance = 0.5f;
 
-Eigen::AlignedBox3f bounds_of(const core::Mesh& mesh) {
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& p : mesh.positions) box.extend(p);
-  return box;
-}
-
 Eigen::Isometry3d placed_on_board(const core::Mesh& mesh, float lift_m) {
-  const Eigen::AlignedBox3f box = bounds_of(mesh);
+  const Eigen::AlignedBox3f box = core::bounds_of(mesh);
   const Eigen::Vector3d foot(box.center().x(), box.center().y(), box.min().z());
   return Eigen::Translation3d(0, 0, lift_m) *
          Eigen::AngleAxisd(kTurnRad, Eigen::Vector3d::UnitZ()) * Eigen::Translation3d(-foot);
@@ -77,7 +72,7 @@ struct Scene::Impl {
         board_from_object(placed_on_board(object, lift_m)),
         object_from_board(board_from_object.inverse().cast<float>()),
         in_board(transformed(object, board_from_object.cast<float>())),
-        bounds(bounds_of(in_board)),
+        bounds(core::bounds_of(in_board)),
         radius_m(0.5f * bounds.sizes().maxCoeff()),
         print(radius_m),
         caster(in_board),

@@ -4,6 +4,7 @@
 #include "capture/calibration/camera_file.h"
 #include "capture/pose/board.h"
 #include "capture/pose/trajectory.h"
+#include "capture/session/session_file.h"
 #include "capture/synthetic/camera_path.h"
 #include "capture/synthetic/hash.h"
 #include "capture/synthetic/motion_jpeg_file.h"
@@ -11,16 +12,15 @@
 #include "capture/synthetic/torus_knot.h"
 #include "core/diagnostics/error.h"
 #include "core/files/staged_output.h"
+#include "core/mesh/bounds.h"
 #include "core/mesh/read_mesh.h"
 
 #include <Eigen/Geometry>
-#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -70,34 +70,11 @@ std::vector<Trajectory::Entry> walk(const CameraPath& path, int views, bool clos
   return entries;
 }
 
-nlohmann::ordered_json transform_json(const Eigen::Isometry3d& transform) {
-  nlohmann::ordered_json numbers = nlohmann::ordered_json::array();
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) numbers.push_back(transform.matrix()(row, column));
-  }
-  return numbers;
-}
-
-void write_text(const fs::path& path, const std::string& text) {
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file) throw write_failure(path);
-}
-
 /// Files both sessions have: session.json, camera.yaml, object.ply.
 void write_common(const fs::path& folder, const Scene& scene, const SyntheticOptions& options,
-                  const core::CameraModel& camera, nlohmann::ordered_json frames,
-                  const char* pose_key, const char* pose_file) {
-  nlohmann::ordered_json session;
-  session["format"] = "sheen-session";
-  session["version"] = 1;
-  session["frames"] = std::move(frames);
-  session["camera"] = "camera.yaml";
-  session[pose_key] = pose_file;
-  session["object"] = {{"mesh", "object.ply"},
-                       {"T_stage_object", transform_json(scene.board_from_object())}};
-  write_text(folder / "session.json", session.dump(2) + "\n");
+                  const core::CameraModel& camera, SessionFile session) {
+  session.board_from_object = scene.board_from_object();
+  write_session_file(folder, session);
   write_camera(folder / "camera.yaml", camera);
   const bool coarser = !options.mesh && options.mesh_vertices > 0;
   core::write_ply(folder / "object.ply",
@@ -109,8 +86,8 @@ void write_recording(const fs::path& folder, const Scene& scene, const core::Cam
   const CameraPath path(recording_path(options.seed), scene.object_centre(),
                         scene.object_radius_m());
   const std::vector<Trajectory::Entry> poses = walk(path, options.frames, false);
-  write_common(folder, scene, options, camera, {{"video", "frames.avi"}, {"fps", kFps}}, "board",
-               "board.yaml");
+  write_common(folder, scene, options, camera,
+               {.video = "frames.avi", .fps = kFps, .board = "board.yaml"});
   write_board(folder / "board.yaml", scene.board());
   write_trajectory(folder / "truth_poses.txt", poses);
 
@@ -133,8 +110,7 @@ void write_held_out(const fs::path& folder, const Scene& scene, const core::Came
                         scene.object_radius_m());
   const std::vector<Trajectory::Entry> poses = walk(path, options.held_out, true);
   fs::create_directories(folder / "images");
-  write_common(folder, scene, options, camera, {{"images", "images/%04d.png"}}, "poses",
-               "poses.txt");
+  write_common(folder, scene, options, camera, {.images = "images/%04d.png", .poses = "poses.txt"});
   write_trajectory(folder / "poses.txt", poses);
 
   const RenderCamera render_camera(camera);
@@ -185,9 +161,7 @@ Scene make_scene(const SyntheticOptions& options) {
     return {options.scene, torus_knot(options.vertices), kKnotLift, options.threads};
   }
   core::Mesh mesh = core::read_mesh(*options.mesh);
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& p : mesh.positions) box.extend(p);
-  const double radius = 0.5 * static_cast<double>(box.sizes().maxCoeff());
+  const double radius = 0.5 * static_cast<double>(core::bounds_of(mesh).sizes().maxCoeff());
   if (!(radius >= kMinRadius && radius <= kMaxRadius)) {
     throw core::bad_input(*options.mesh, "is " + std::to_string(2 * radius) + " m across",
                           "give a mesh in metres, between 0.02 and 4 across");

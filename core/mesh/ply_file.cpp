@@ -2,7 +2,7 @@
 #include "core/mesh/ply_file.h"
 
 #include "core/diagnostics/error.h"
-#include "core/files/staged_output.h"
+#include "core/files/write_file.h"
 #include "core/mesh/ply_header.h"
 
 #include <algorithm>
@@ -224,7 +224,6 @@ Mesh read_ply(const std::filesystem::path& path) {
 
 void write_ply(const std::filesystem::path& path, const Mesh& mesh) {
   assert(mesh.normals.size() == mesh.positions.size());
-  // Lay out.
   std::string bytes = header_text(mesh);
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     for (const float value : mesh.positions[i]) append_bytes(bytes, value);
@@ -235,15 +234,7 @@ void write_ply(const std::filesystem::path& path, const Mesh& mesh) {
     for (const std::uint32_t corner : triangle) append_bytes(bytes, corner);
   }
 
-  // Write and move into place.
-  StagedOutput output(path);
-  std::ofstream file(output.path(), std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file) {
-    throw Error(Error::Kind::run_failed, path, "cannot be written", "check free space");
-  }
-  output.commit();
+  write_file(path, bytes);
 }
 
 }  // namespace sheen::core

@@ -9,21 +9,21 @@ namespace sheen::fitting::guidance {
 
 /// What is kept while views arrive: where they are missing, whether they fit, how good it gets.
 struct CaptureScore {
-  ViewUtility need;
+  ViewUtility utility;
   FrameGate gate;
   QualityCurve curve;
 
-  explicit CaptureScore(std::size_t patch_count) : need(patch_count) {}
+  explicit CaptureScore(std::size_t patch_count) : utility(patch_count) {}
 
   /// Judges a view before it is integrated.
-  FrameVerdict judge(const core::SampleBatch& batch, const LightField& model) {
-    score_ = need.score(batch, model);
+  FrameVerdict judge(const core::SampleBatch& batch, const PatchLightField& model) {
+    score_ = utility.score(batch, model);
     return gate.judge(score_);
   }
 
   /// The view judged last is about to be integrated; `coverage` as known, [0, 1].
   void note(const core::SampleBatch& batch, double coverage) {
-    need.note(batch);
+    utility.note(batch);
     curve.add(score_, coverage);
   }
 

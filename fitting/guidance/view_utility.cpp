@@ -27,7 +27,7 @@ float drawn(float mean, std::uint16_t count, float typical) {
 }  // namespace
 
 ViewUtility::Prediction ViewUtility::predict(const core::SampleBatch& batch, std::size_t i,
-                                             const LightField& model) const {
+                                             const PatchLightField& model) const {
   Prediction prediction;
   const PatchKnowledge& patch = patches_[batch.patch[i]];
   if (patch.samples == 0 || !usable_sample(batch, i)) return prediction;
@@ -64,7 +64,7 @@ double ViewUtility::median_gain() {
   return scratch_.size() < few ? 1 : std::max(core::upper_median(scratch_), 0.05);
 }
 
-FrameScore ViewUtility::score(const core::SampleBatch& batch, const LightField& model) {
+FrameScore ViewUtility::score(const core::SampleBatch& batch, const PatchLightField& model) {
   FrameScore score;
   score.samples = batch.size();
   predictions_.resize(batch.size());
@@ -137,12 +137,12 @@ float ViewUtility::seen_direction_error(std::size_t patch_idx) const {
                typical_seen_direction_error());
 }
 
-std::vector<float> smooth_unseen_direction_errors(const ViewUtility& need,
+std::vector<float> smooth_unseen_direction_errors(const ViewUtility& utility,
                                                   const core::VertexNeighbours& neighbours) {
   constexpr int passes = 2;
-  const std::size_t count = need.patches().size();
+  const std::size_t count = utility.patches().size();
   std::vector<float> errors(count);
-  for (std::size_t i = 0; i < count; ++i) errors[i] = need.unseen_direction_error(i);
+  for (std::size_t i = 0; i < count; ++i) errors[i] = utility.unseen_direction_error(i);
   std::vector<float> before;
   for (int pass = 0; pass < passes; ++pass) {
     before = errors;

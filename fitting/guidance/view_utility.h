@@ -5,7 +5,7 @@
 #include "core/mesh/neighbours.h"
 #include "core/samples/sample_batch.h"
 #include "fitting/guidance/direction_cells.h"
-#include "fitting/light_field.h"
+#include "fitting/patch_light_field.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -49,7 +49,7 @@ class ViewUtility {
   explicit ViewUtility(std::size_t patch_count) : patches_(patch_count) {}
 
   /// Compares a batch with the model, before it is integrated. Nothing is learnt yet.
-  FrameScore score(const core::SampleBatch& batch, const LightField& model);
+  FrameScore score(const core::SampleBatch& batch, const PatchLightField& model);
 
   /// Learns from the batch that was scored last, which the model is about to integrate.
   void note(const core::SampleBatch& batch);
@@ -80,7 +80,7 @@ class ViewUtility {
   };
 
   [[nodiscard]] Prediction predict(const core::SampleBatch& batch, std::size_t i,
-                                   const LightField& model) const;
+                                   const PatchLightField& model) const;
   [[nodiscard]] double median_normalised_residual(const core::SampleBatch& batch, float gain);
   [[nodiscard]] double median_gain();
   static void learn(float& mean, std::uint16_t& count, float value, Totals& totals);
@@ -93,7 +93,7 @@ class ViewUtility {
 
 /// `unseen_direction_error` of every patch, averaged with its neighbours' and theirs: single
 /// patches have seen too little to be told apart.
-std::vector<float> smooth_unseen_direction_errors(const ViewUtility& need,
+std::vector<float> smooth_unseen_direction_errors(const ViewUtility& utility,
                                                   const core::VertexNeighbours& neighbours);
 
 /// Variance that missing views leave in a patch, as a mean over the directions `reachable`, sRGB^2:

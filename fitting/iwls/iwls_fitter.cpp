@@ -17,7 +17,7 @@ ModelShape shape_of(const CenterLayout& layout, int terms) {
 
 // A construction and the model it writes, patch by patch.
 template <typename Builder>
-class IwlsFitter final : public Fitter {
+class IwlsFitter final : public PatchFitter {
  public:
   IwlsFitter(const core::VertexNeighbours& neighbours, const FitSettings& settings, int terms,
              int threads)
@@ -27,9 +27,9 @@ class IwlsFitter final : public Fitter {
         unsolved_(neighbours.vertex_count(), 0),
         model_(shape_of(settings.layout, terms), neighbours.vertex_count()) {}
 
-  const ModelUpdate& integrate(const core::SampleBatch& batch) override;
+  const ModelUpdate& integrate_samples(const core::SampleBatch& batch) override;
   const ModelUpdate& finish() override;
-  [[nodiscard]] const LightField& light_field() const override { return model_; }
+  [[nodiscard]] const PatchLightField& light_field() const override { return model_; }
   [[nodiscard]] FitStatistics statistics() const override { return loop_.statistics(); }
 
  private:
@@ -58,7 +58,7 @@ FitOutcome IwlsFitter<Builder>::integrate_sample(std::size_t patch_idx, const Sa
 }
 
 template <typename Builder>
-const ModelUpdate& IwlsFitter<Builder>::integrate(const core::SampleBatch& batch) {
+const ModelUpdate& IwlsFitter<Builder>::integrate_samples(const core::SampleBatch& batch) {
   return loop_.integrate(
       batch,
       [this](std::size_t patch_idx, const Sample& sample) {
@@ -107,10 +107,10 @@ double refine_above(const Options& options, int terms) {
 }
 
 template <std::size_t kTerms>
-std::unique_ptr<Fitter> make_with_terms(const core::VertexNeighbours& neighbours,
-                                        Construction construction, const FitSettings& settings,
-                                        int threads) {
-  const auto make = [&]<typename Builder>() -> std::unique_ptr<Fitter> {
+std::unique_ptr<PatchFitter> make_with_terms(const core::VertexNeighbours& neighbours,
+                                             Construction construction, const FitSettings& settings,
+                                             int threads) {
+  const auto make = [&]<typename Builder>() -> std::unique_ptr<PatchFitter> {
     return std::make_unique<IwlsFitter<Builder>>(neighbours, settings, static_cast<int>(kTerms),
                                                  threads);
   };
@@ -132,8 +132,8 @@ std::unique_ptr<Fitter> make_with_terms(const core::VertexNeighbours& neighbours
 
 }  // namespace
 
-std::unique_ptr<Fitter> make_iwls_fitter(const core::VertexNeighbours& neighbours,
-                                         const Options& options, int threads) {
+std::unique_ptr<PatchFitter> make_iwls_fitter(const core::VertexNeighbours& neighbours,
+                                              const Options& options, int threads) {
   options.check();
   const bool choose_order = options.terms == 0 && !options.faithful;
   const int terms = choose_order ? 6 : (options.faithful ? 3 : options.terms);

@@ -4,7 +4,7 @@
 #include "fitting/huge_pages.h"
 #include "fitting/iwls/options.h"
 #include "fitting/iwls/quad_kernels.h"
-#include "fitting/light_field.h"
+#include "fitting/patch_light_field.h"
 
 #include <Eigen/Core>
 
@@ -24,7 +24,7 @@ struct ModelShape {
 /// The light field of incremental weighted least squares: per patch one low-degree polynomial at
 /// each centre, joined by a partition of unity (eqs. 6, 7). With d = (uv - centre) / support_radius
 /// the terms are 1, d.u, d.v, d.u^2, d.u d.v, d.v^2.
-class LightFieldModel final : public LightField {
+class LightFieldModel final : public PatchLightField {
  public:
   /// Mid grey everywhere, nothing observed.
   LightFieldModel(ModelShape shape, std::size_t patch_count);

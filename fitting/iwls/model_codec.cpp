@@ -87,6 +87,7 @@ ModelPart encode_model(const LightField& light_field) {
     centers.push_back({static_cast<double>(center.x()), static_cast<double>(center.y())});
   }
   ModelPart part;
+  part.observed = std::as_bytes(std::span(model.observed()));
   part.parameters = {{"layout", name_of(shape.layout)},
                      {"centers", std::move(centers)},
                      {"terms", static_cast<unsigned>(shape.terms)},
@@ -98,8 +99,8 @@ ModelPart encode_model(const LightField& light_field) {
   return part;
 }
 
-std::unique_ptr<const LightField> decode_model(const ModelPart& part,
-                                               std::vector<std::uint8_t> observed) {
+std::unique_ptr<const LightField> decode_model(const ModelPart& part, const core::Mesh& mesh) {
+  auto observed = required_observed(part, mesh.positions.size());
   ModelShape shape = shape_from(part.parameters);
   const std::size_t count =
       observed.size() * shape.centers.size() * static_cast<std::size_t>(3 * shape.terms);

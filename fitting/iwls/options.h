@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "fitting/option_table.h"
+
 #include <optional>
-#include <string>
 #include <string_view>
 
 namespace sheen::fitting::iwls {
@@ -13,7 +14,6 @@ enum class Layout { grid, jittered_grid, disk, jittered_disk };
 /// Names as options and model files spell them, e.g. "jittered-disk".
 std::string_view name_of(Construction construction);
 std::string_view name_of(Layout layout);
-std::optional<Construction> construction_named(std::string_view name);
 std::optional<Layout> layout_named(std::string_view name);
 
 /// How an IWLS model is built (docs/algorithm.md).
@@ -26,5 +26,8 @@ struct Options {
   /// Throws std::invalid_argument naming the option and its allowed values.
   void check() const;
 };
+
+/// What users choose of it; the construction is called "fitter".
+OptionTable option_table(Options& options);
 
 }  // namespace sheen::fitting::iwls

@@ -14,16 +14,16 @@ Eigen::Vector3f as_colour(const Rgb& rgb) {
   return {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]), static_cast<float>(rgb[2])};
 }
 
-class MeanFitter final : public Fitter {
+class MeanFitter final : public PatchFitter {
  public:
   MeanFitter(const core::VertexNeighbours& neighbours, int threads)
       : loop_(neighbours, threads),
         totals_(neighbours.vertex_count()),
         model_(neighbours.vertex_count()) {}
 
-  const ModelUpdate& integrate(const core::SampleBatch& batch) override;
+  const ModelUpdate& integrate_samples(const core::SampleBatch& batch) override;
   const ModelUpdate& finish() override;
-  [[nodiscard]] const LightField& light_field() const override { return model_; }
+  [[nodiscard]] const PatchLightField& light_field() const override { return model_; }
   [[nodiscard]] FitStatistics statistics() const override { return loop_.statistics(); }
 
  private:
@@ -32,7 +32,7 @@ class MeanFitter final : public Fitter {
   MeanLightField model_;
 };
 
-const ModelUpdate& MeanFitter::integrate(const core::SampleBatch& batch) {
+const ModelUpdate& MeanFitter::integrate_samples(const core::SampleBatch& batch) {
   return loop_.integrate(batch, [this](std::size_t patch_idx, const Sample& sample) {
     PatchTotal& total = totals_[patch_idx];
     total.add(sample.rgb);
@@ -52,7 +52,8 @@ const ModelUpdate& MeanFitter::finish() {
 
 }  // namespace
 
-std::unique_ptr<Fitter> make_mean_fitter(const core::VertexNeighbours& neighbours, int threads) {
+std::unique_ptr<PatchFitter> make_mean_fitter(const core::VertexNeighbours& neighbours,
+                                              int threads) {
   return std::make_unique<MeanFitter>(neighbours, threads);
 }
 

@@ -2,13 +2,14 @@
 #pragma once
 
 #include "core/mesh/neighbours.h"
-#include "fitting/fitter.h"
+#include "fitting/patch_fitter.h"
 
 #include <memory>
 
 namespace sheen::fitting::mean {
 
 /// The mean of all samples of a patch. `threads` >= 1.
-std::unique_ptr<Fitter> make_mean_fitter(const core::VertexNeighbours& neighbours, int threads);
+std::unique_ptr<PatchFitter> make_mean_fitter(const core::VertexNeighbours& neighbours,
+                                              int threads);
 
 }  // namespace sheen::fitting::mean

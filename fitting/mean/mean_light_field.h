@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "fitting/light_field.h"
+#include "fitting/patch_light_field.h"
 
 #include <Eigen/Core>
 
@@ -12,7 +12,7 @@ namespace sheen::fitting::mean {
 
 /// One colour per patch, the same in all directions: the smallest light field there is and the
 /// yardstick for the others.
-class MeanLightField final : public LightField {
+class MeanLightField final : public PatchLightField {
  public:
   /// Mid grey everywhere, nothing observed.
   explicit MeanLightField(std::size_t patch_count);

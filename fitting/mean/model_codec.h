@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "fitting/model_file/model_codec.h"
+#include "core/mesh/mesh.h"
+#include "fitting/light_field.h"
+#include "fitting/model_file/model_part.h"
+
+#include <memory>
 
 namespace sheen::fitting::mean {
 
 /// No parameters. Array: coefficients, half floats [patch][r, g, b].
 ModelPart encode_model(const LightField& light_field);
-std::unique_ptr<const LightField> decode_model(const ModelPart& part,
-                                               std::vector<std::uint8_t> observed);
+std::unique_ptr<const LightField> decode_model(const ModelPart& part, const core::Mesh& mesh);
 
 }  // namespace sheen::fitting::mean

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/model_file/glb.h"
 
-#include "fitting/model_file/model_codec.h"
+#include "fitting/model_file/model_part.h"
 
 #include <bit>
 #include <cstdint>

@@ -4,6 +4,7 @@
 #include "core/mesh/mesh.h"
 #include "fitting/light_field.h"
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 
@@ -14,6 +15,9 @@ struct Model {
   core::Mesh mesh;
   std::unique_ptr<const LightField> light_field;
 };
+
+/// Bytes of a light field in a model file: those of its arrays, without mesh and names.
+std::size_t byte_size(const LightField& light_field);
 
 /// Writes a binary glTF 2.0 file with the extension SHEEN_surface_light_field (docs/formats.md,
 /// "model"), beside its final name and then moved into place. Equal models give equal bytes.

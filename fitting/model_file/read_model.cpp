@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "core/diagnostics/error.h"
+#include "fitting/descriptor.h"
 #include "fitting/model_file/checksum.h"
 #include "fitting/model_file/document.h"
 #include "fitting/model_file/glb.h"
-#include "fitting/model_file/model_codec.h"
 #include "fitting/model_file/model_file.h"
+#include "fitting/model_file/model_part.h"
 
 #include <algorithm>
 #include <cmath>
@@ -115,18 +116,6 @@ void check_conventions(const json& extension) {
   }
 }
 
-std::vector<std::uint8_t> read_observed(const Glb& glb, const json& extension,
-                                        std::size_t patch_count) {
-  const auto bytes = view_bytes(glb, required_size(extension, "observed"));
-  if (bytes.size() != patch_count) throw ModelFault("it has not one observed flag per vertex");
-  std::vector<std::uint8_t> observed(patch_count);
-  std::memcpy(observed.data(), bytes.data(), bytes.size());
-  if (std::any_of(observed.begin(), observed.end(), [](std::uint8_t flag) { return flag > 1; })) {
-    throw ModelFault("an observed flag is neither 0 nor 1");
-  }
-  return observed;
-}
-
 ModelPart read_part(const Glb& glb, const json& extension) {
   ModelPart part;
   part.parameters = required(extension, "parameters");
@@ -135,17 +124,19 @@ ModelPart read_part(const Glb& glb, const json& extension) {
   for (const auto& [name, view] : arrays.items()) {
     part.arrays[name] = view_bytes(glb, required_size(arrays, name.c_str()));
   }
+  if (extension.contains("observed")) {
+    part.observed = view_bytes(glb, required_size(extension, "observed"));
+  }
   return part;
 }
 
-std::unique_ptr<const LightField> read_light_field(const Glb& glb, std::size_t patch_count) {
+std::unique_ptr<const LightField> read_light_field(const Glb& glb, const core::Mesh& mesh) {
   const json& extensions = required(glb.document, "extensions");
   const json& extension = required(extensions, kExtension);
   check_conventions(extension);
   const std::string name = required_string(extension, "representation");
-  for (const ModelCodec& codec : model_codecs()) {
-    if (codec.representation != name) continue;
-    return codec.decode(read_part(glb, extension), read_observed(glb, extension, patch_count));
+  for (const Descriptor* descriptor : representations()) {
+    if (descriptor->name == name) return descriptor->decode(read_part(glb, extension), mesh);
   }
   throw ModelFault("its representation \"" + name.substr(0, 40) + "\" is unknown");
 }
@@ -160,7 +151,7 @@ Model parse_model(std::string file) {
     throw ModelFault("its checksum does not fit: the file was altered");
   Model model;
   model.mesh = read_mesh_part(glb);
-  model.light_field = read_light_field(glb, model.mesh.positions.size());
+  model.light_field = read_light_field(glb, model.mesh);
   return model;
 }
 

@@ -1,31 +1,22 @@
 // SPDX-License-Identifier: MIT
 #include "core/diagnostics/error.h"
-#include "core/files/staged_output.h"
+#include "core/files/write_file.h"
+#include "fitting/descriptor.h"
 #include "fitting/model_file/checksum.h"
 #include "fitting/model_file/document.h"
 #include "fitting/model_file/glb.h"
-#include "fitting/model_file/model_codec.h"
 #include "fitting/model_file/model_file.h"
+#include "fitting/model_file/model_part.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
-#include <fstream>
 
 namespace sheen::fitting {
 namespace {
 
 using nlohmann::json;
-
-const ModelCodec& codec_of(const LightField& light_field) {
-  const auto codecs = model_codecs();
-  const auto codec = std::find_if(codecs.begin(), codecs.end(), [&](const ModelCodec& candidate) {
-    return candidate.representation == light_field.representation();
-  });
-  assert(codec != codecs.end());
-  return *codec;
-}
 
 template <typename T>
 std::span<const std::byte> bytes_of(const std::vector<T>& values) {
@@ -42,12 +33,12 @@ std::uint16_t linear_from_srgb(float srgb) {
   return static_cast<std::uint16_t>(std::lround(std::clamp(linear, 0.0f, 1.0f) * 65535.0f));
 }
 
-std::vector<std::array<std::uint16_t, 4>> vertex_colours(const LightField& light_field) {
-  std::vector<std::array<std::uint16_t, 4>> colours(light_field.patch_count());
-  for (std::size_t patch = 0; patch < colours.size(); ++patch) {
-    const Eigen::Vector3f srgb = light_field.mean_colour(patch);
-    colours[patch] = {linear_from_srgb(srgb.x()), linear_from_srgb(srgb.y()),
-                      linear_from_srgb(srgb.z()), 65535};
+std::vector<std::array<std::uint16_t, 4>> linear_colours(const std::vector<Eigen::Vector3f>& srgb) {
+  std::vector<std::array<std::uint16_t, 4>> colours;
+  colours.reserve(srgb.size());
+  for (const Eigen::Vector3f& colour : srgb) {
+    colours.push_back({linear_from_srgb(colour.x()), linear_from_srgb(colour.y()),
+                       linear_from_srgb(colour.z()), 65535});
   }
   return colours;
 }
@@ -69,8 +60,9 @@ void add_mesh(const core::Mesh& mesh, const LightField& light_field, DocumentBui
   attributes["POSITION"] = position;
   attributes["NORMAL"] =
       builder.add_accessor(bytes_of(mesh.normals), kArrayBuffer, kFloat, "VEC3", vertices);
-  const std::size_t colour = builder.add_accessor(bytes_of(vertex_colours(light_field)),
-                                                  kArrayBuffer, kUnsignedShort, "VEC4", vertices);
+  const std::size_t colour =
+      builder.add_accessor(bytes_of(linear_colours(light_field.vertex_colours(mesh))), kArrayBuffer,
+                           kUnsignedShort, "VEC4", vertices);
   builder.document["accessors"][colour]["normalized"] = true;
   attributes["COLOR_0"] = colour;
   const std::size_t indices =
@@ -94,39 +86,29 @@ void add_scene(json& document) {
 }
 
 void add_light_field(const LightField& light_field, DocumentBuilder& builder) {
-  const ModelPart part = codec_of(light_field).encode(light_field);
+  const ModelPart part = representation_named(light_field.representation()).encode(light_field);
   json arrays = json::object();
   for (const auto& [name, bytes] : part.arrays) arrays[name] = builder.add_view(bytes);
-  builder.document["extensions"][kExtension] = {
-      {"version", kExtensionVersion},
-      {"representation", light_field.representation()},
-      {"directionMap", kDirectionMap},
-      {"tangentFrame", kTangentFrame},
-      {"colorSpace", kColourSpace},
-      {"checksum", kChecksumPlaceholder},
-      {"observed", builder.add_view(bytes_of(light_field.observed()))},
-      {"parameters", part.parameters},
-      {"arrays", std::move(arrays)}};
-}
-
-void write_bytes(const std::filesystem::path& path, const std::string& bytes) {
-  core::StagedOutput output(path);
-  std::ofstream file(output.path(), std::ios::binary);
-  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file) {
-    throw core::Error(core::Error::Kind::run_failed, path, "the model cannot be written",
-                      "check free space and permissions");
-  }
-  output.commit();
+  json& extension = builder.document["extensions"][kExtension];
+  extension = {{"version", kExtensionVersion},  {"representation", light_field.representation()},
+               {"directionMap", kDirectionMap}, {"tangentFrame", kTangentFrame},
+               {"colorSpace", kColourSpace},    {"checksum", kChecksumPlaceholder},
+               {"parameters", part.parameters}, {"arrays", std::move(arrays)}};
+  if (!part.observed.empty()) extension["observed"] = builder.add_view(part.observed);
 }
 
 }  // namespace
 
+std::size_t byte_size(const LightField& light_field) {
+  const ModelPart part = representation_named(light_field.representation()).encode(light_field);
+  std::size_t bytes = part.observed.size();
+  for (const auto& [name, array] : part.arrays) bytes += array.size();
+  return bytes;
+}
+
 void write_model(const std::filesystem::path& path, const core::Mesh& mesh,
                  const LightField& light_field) {
   assert(!mesh.positions.empty() && !mesh.triangles.empty());
-  assert(mesh.positions.size() == light_field.patch_count());
   DocumentBuilder builder;
   add_scene(builder.document);
   add_mesh(mesh, light_field, builder);
@@ -139,7 +121,7 @@ void write_model(const std::filesystem::path& path, const core::Mesh& mesh,
                       "use fewer centres, fewer terms or a coarser mesh");
   }
   write_checksum(*bytes);
-  write_bytes(path, *bytes);
+  core::write_file(path, *bytes);
 }
 
 }  // namespace sheen::fitting

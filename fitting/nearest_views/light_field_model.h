@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "fitting/light_field.h"
+#include "fitting/patch_light_field.h"
 
 #include <Eigen/Core>
 
@@ -18,7 +18,7 @@ using StoredSample = std::array<Eigen::half, 5>;
 /// weighted as in Buehler et al., "Unstructured Lumigraph Rendering" (2001): with the angles a_i to
 /// the nearest and a_4 to the fourth, w_i = (1 - a_i / a_4) / a_i. Interpolates the samples, is
 /// continuous, and costs ten bytes per sample: the yardstick for what models save.
-class LightFieldModel final : public LightField {
+class LightFieldModel final : public PatchLightField {
  public:
   /// No samples, nothing observed: mid grey everywhere.
   explicit LightFieldModel(std::size_t patch_count);

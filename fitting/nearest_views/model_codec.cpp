@@ -47,6 +47,7 @@ ModelPart encode_model(const LightField& light_field) {
     packed->samples.insert(packed->samples.end(), samples.begin(), samples.end());
   }
   ModelPart part;
+  part.observed = std::as_bytes(std::span(model.observed()));
   part.arrays["counts"] = std::as_bytes(std::span(packed->counts));
   // glTF knows no empty bufferView.
   if (!packed->samples.empty()) part.arrays["samples"] = std::as_bytes(std::span(packed->samples));
@@ -54,8 +55,8 @@ ModelPart encode_model(const LightField& light_field) {
   return part;
 }
 
-std::unique_ptr<const LightField> decode_model(const ModelPart& part,
-                                               std::vector<std::uint8_t> observed) {
+std::unique_ptr<const LightField> decode_model(const ModelPart& part, const core::Mesh& mesh) {
+  auto observed = required_observed(part, mesh.positions.size());
   const std::vector<std::uint32_t> counts =
       counts_from(required_bytes(part, "counts", observed.size() * sizeof(std::uint32_t)));
   std::size_t total = 0;

@@ -8,14 +8,14 @@
 namespace sheen::fitting::nearest_views {
 namespace {
 
-class NearestFitter final : public Fitter {
+class NearestFitter final : public PatchFitter {
  public:
   NearestFitter(const core::VertexNeighbours& neighbours, int threads)
       : loop_(neighbours, threads), model_(neighbours.vertex_count()) {}
 
-  const ModelUpdate& integrate(const core::SampleBatch& batch) override;
+  const ModelUpdate& integrate_samples(const core::SampleBatch& batch) override;
   const ModelUpdate& finish() override;
-  [[nodiscard]] const LightField& light_field() const override { return model_; }
+  [[nodiscard]] const PatchLightField& light_field() const override { return model_; }
   [[nodiscard]] FitStatistics statistics() const override { return loop_.statistics(); }
 
  private:
@@ -23,7 +23,7 @@ class NearestFitter final : public Fitter {
   LightFieldModel model_;
 };
 
-const ModelUpdate& NearestFitter::integrate(const core::SampleBatch& batch) {
+const ModelUpdate& NearestFitter::integrate_samples(const core::SampleBatch& batch) {
   return loop_.integrate(batch, [this](std::size_t patch_idx, const Sample& sample) {
     model_.add(patch_idx, Eigen::Vector2d(sample.u, sample.v).cast<float>(),
                Eigen::Vector3d(sample.rgb.data()).cast<float>());
@@ -42,7 +42,8 @@ const ModelUpdate& NearestFitter::finish() {
 
 }  // namespace
 
-std::unique_ptr<Fitter> make_nearest_fitter(const core::VertexNeighbours& neighbours, int threads) {
+std::unique_ptr<PatchFitter> make_nearest_fitter(const core::VertexNeighbours& neighbours,
+                                                 int threads) {
   return std::make_unique<NearestFitter>(neighbours, threads);
 }
 

@@ -2,13 +2,14 @@
 #pragma once
 
 #include "core/mesh/neighbours.h"
-#include "fitting/fitter.h"
+#include "fitting/patch_fitter.h"
 
 #include <memory>
 
 namespace sheen::fitting::nearest_views {
 
 /// Keeps all samples; nothing is solved. `threads` >= 1.
-std::unique_ptr<Fitter> make_nearest_fitter(const core::VertexNeighbours& neighbours, int threads);
+std::unique_ptr<PatchFitter> make_nearest_fitter(const core::VertexNeighbours& neighbours,
+                                                 int threads);
 
 }  // namespace sheen::fitting::nearest_views

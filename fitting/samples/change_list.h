@@ -21,9 +21,9 @@ class ChangeList {
   /// Replaces `update` by the marked entries; `patch_of` turns an entry's index into its patch.
   template <typename PatchOf>
   void list(const PatchOf& patch_of, ModelUpdate& update) const {
-    update.patches.clear();
+    update.elements.clear();
     for (std::size_t i = 0; i < flags_.size(); ++i) {
-      if (flags_[i] != 0) update.patches.push_back(patch_of(i));
+      if (flags_[i] != 0) update.elements.push_back(patch_of(i));
     }
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "fitting/light_field.h"
+#include "fitting/patch_light_field.h"
 #include "fitting/sparse/patch_model.h"
 
 #include <array>
@@ -12,7 +12,7 @@ namespace sheen::fitting::sparse {
 
 /// The light field of sparse patches. A patch of one colour takes 16 bytes; every further term 8
 /// more, in a block that grows with the patch and is kept when the patch shrinks.
-class LightFieldModel final : public LightField {
+class LightFieldModel final : public PatchLightField {
  public:
   /// Mid grey everywhere, nothing observed.
   explicit LightFieldModel(std::size_t patch_count);

@@ -78,6 +78,7 @@ ModelPart encode_model(const LightField& light_field) {
   packed->shapes.reserve(model.patch_count());
   for (std::size_t i = 0; i < model.patch_count(); ++i) pack(model.patch(i), *packed);
   ModelPart part;
+  part.observed = std::as_bytes(std::span(model.observed()));
   part.parameters = {{"atoms", atoms_as_json()}};
   part.arrays["shapes"] = std::as_bytes(std::span(packed->shapes));
   // glTF knows no empty bufferView.
@@ -87,8 +88,8 @@ ModelPart encode_model(const LightField& light_field) {
   return part;
 }
 
-std::unique_ptr<const LightField> decode_model(const ModelPart& part,
-                                               std::vector<std::uint8_t> observed) {
+std::unique_ptr<const LightField> decode_model(const ModelPart& part, const core::Mesh& mesh) {
+  auto observed = required_observed(part, mesh.positions.size());
   if (required(part.parameters, "atoms") != atoms_as_json()) {
     throw ModelFault("its \"atoms\" are not those of this version of sheen");
   }

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "fitting/model_file/model_codec.h"
+#include "core/mesh/mesh.h"
+#include "fitting/light_field.h"
+#include "fitting/model_file/model_part.h"
+
+#include <memory>
 
 namespace sheen::fitting::sparse {
 
@@ -10,7 +14,6 @@ namespace sheen::fitting::sparse {
 /// "bumps", an unsigned 16-bit number per RBF: its atom (left out when there are none);
 /// "coefficients", half floats [term][r, g, b], base first.
 ModelPart encode_model(const LightField& light_field);
-std::unique_ptr<const LightField> decode_model(const ModelPart& part,
-                                               std::vector<std::uint8_t> observed);
+std::unique_ptr<const LightField> decode_model(const ModelPart& part, const core::Mesh& mesh);
 
 }  // namespace sheen::fitting::sparse

@@ -23,4 +23,10 @@ void Options::check() const {
   }
 }
 
+OptionTable option_table(Options& options) {
+  return {number_option("tolerance", options.tolerance, 0.0005, 0.5,
+                        "Error that nobody minds, of 1; more is smaller (default: twice the "
+                        "camera's noise, estimated from the samples)")};
+}
+
 }  // namespace sheen::fitting::sparse

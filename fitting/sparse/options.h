@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "fitting/option_table.h"
+
 #include <optional>
 
 namespace sheen::fitting::sparse {
@@ -22,5 +24,8 @@ struct Options {
   /// Throws std::invalid_argument naming the option and its allowed values.
   void check() const;
 };
+
+/// What users choose of it.
+OptionTable option_table(Options& options);
 
 }  // namespace sheen::fitting::sparse

@@ -54,7 +54,7 @@ struct Request {
   }
 };
 
-class SparseFitter final : public Fitter {
+class SparseFitter final : public PatchFitter {
  public:
   SparseFitter(const core::VertexNeighbours& neighbours, const Options& options, int threads)
       : neighbours_(neighbours),
@@ -65,9 +65,9 @@ class SparseFitter final : public Fitter {
         model_(neighbours.vertex_count()),
         workspaces_(options) {}
 
-  const ModelUpdate& integrate(const core::SampleBatch& batch) override;
+  const ModelUpdate& integrate_samples(const core::SampleBatch& batch) override;
   const ModelUpdate& finish() override;
-  [[nodiscard]] const LightField& light_field() const override { return model_; }
+  [[nodiscard]] const PatchLightField& light_field() const override { return model_; }
   [[nodiscard]] FitStatistics statistics() const override {
     FitStatistics statistics = statistics_;
     statistics.tolerance = tolerance_;
@@ -230,7 +230,7 @@ void SparseFitter::improve(const core::SampleBatch& batch) {
       steps_worth_a_thread);
 }
 
-const ModelUpdate& SparseFitter::integrate(const core::SampleBatch& batch) {
+const ModelUpdate& SparseFitter::integrate_samples(const core::SampleBatch& batch) {
   changes_.reset(batch.size());
   keep_samples(batch);
   update_tolerance();
@@ -293,8 +293,8 @@ std::optional<float> SparseFitter::predicted_error(std::size_t patch_idx,
 
 }  // namespace
 
-std::unique_ptr<Fitter> make_sparse_fitter(const core::VertexNeighbours& neighbours,
-                                           const Options& options, int threads) {
+std::unique_ptr<PatchFitter> make_sparse_fitter(const core::VertexNeighbours& neighbours,
+                                                const Options& options, int threads) {
   options.check();
   assert(threads >= 1);
   return std::make_unique<SparseFitter>(neighbours, options, threads);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/mesh/neighbours.h"
-#include "fitting/fitter.h"
+#include "fitting/patch_fitter.h"
 #include "fitting/sparse/options.h"
 
 #include <memory>
@@ -14,7 +14,7 @@ namespace sheen::fitting::sparse {
 /// or its samples have grown by a third; `finish` chooses the terms of every touched patch anew,
 /// which makes the result independent of the order of views as long as all samples are kept.
 /// `threads` >= 1. Throws std::invalid_argument for bad options.
-std::unique_ptr<Fitter> make_sparse_fitter(const core::VertexNeighbours& neighbours,
-                                           const Options& options, int threads);
+std::unique_ptr<PatchFitter> make_sparse_fitter(const core::VertexNeighbours& neighbours,
+                                                const Options& options, int threads);
 
 }  // namespace sheen::fitting::sparse

@@ -57,7 +57,7 @@ struct NormalEquations {
 };
 
 template <std::size_t kTerms>
-class HarmonicsFitter final : public Fitter {
+class HarmonicsFitter final : public PatchFitter {
  public:
   HarmonicsFitter(const core::VertexNeighbours& neighbours, const Options& options, int threads)
       : options_(options),
@@ -65,9 +65,9 @@ class HarmonicsFitter final : public Fitter {
         systems_(neighbours.vertex_count()),
         model_(options.degree, neighbours.vertex_count()) {}
 
-  const ModelUpdate& integrate(const core::SampleBatch& batch) override;
+  const ModelUpdate& integrate_samples(const core::SampleBatch& batch) override;
   const ModelUpdate& finish() override;
-  [[nodiscard]] const LightField& light_field() const override { return model_; }
+  [[nodiscard]] const PatchLightField& light_field() const override { return model_; }
   [[nodiscard]] FitStatistics statistics() const override { return loop_.statistics(); }
 
  private:
@@ -92,7 +92,7 @@ FitOutcome HarmonicsFitter<kTerms>::integrate_sample(std::size_t patch_idx, cons
 }
 
 template <std::size_t kTerms>
-const ModelUpdate& HarmonicsFitter<kTerms>::integrate(const core::SampleBatch& batch) {
+const ModelUpdate& HarmonicsFitter<kTerms>::integrate_samples(const core::SampleBatch& batch) {
   return loop_.integrate(batch, [this](std::size_t patch_idx, const Sample& sample) {
     return integrate_sample(patch_idx, sample);
   });
@@ -112,8 +112,8 @@ const ModelUpdate& HarmonicsFitter<kTerms>::finish() {
 
 }  // namespace
 
-std::unique_ptr<Fitter> make_harmonics_fitter(const core::VertexNeighbours& neighbours,
-                                              const Options& options, int threads) {
+std::unique_ptr<PatchFitter> make_harmonics_fitter(const core::VertexNeighbours& neighbours,
+                                                   const Options& options, int threads) {
   options.check();
   switch (options.degree) {
     case 1:

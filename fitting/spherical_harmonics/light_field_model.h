@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "fitting/light_field.h"
+#include "fitting/patch_light_field.h"
 #include "fitting/spherical_harmonics/basis.h"
 
 #include <Eigen/Core>
@@ -13,7 +13,7 @@ namespace sheen::fitting::spherical_harmonics {
 
 /// Spherical harmonics per patch, evaluated on the direction (u, v, sqrt(1 - u^2 - v^2)) of the
 /// patch's tangent frame: what Gaussian splats and most light field baselines use.
-class LightFieldModel final : public LightField {
+class LightFieldModel final : public PatchLightField {
  public:
   /// Mid grey everywhere, nothing observed. `degree` is 1, 2 or 3.
   LightFieldModel(int degree, std::size_t patch_count);

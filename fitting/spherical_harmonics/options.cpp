@@ -18,4 +18,11 @@ void Options::check() const {
   }
 }
 
+OptionTable option_table(Options& options) {
+  return {number_option("degree", options.degree, 1, kMaxDegree,
+                        "Of the harmonics: 4, 9 or 16 terms per patch"),
+          number_option("ridge", options.ridge, 1e-6, 1000.0,
+                        "Pull of all terms but the constant towards zero, in samples")};
+}
+
 }  // namespace sheen::fitting::spherical_harmonics

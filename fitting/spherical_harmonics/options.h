@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "fitting/option_table.h"
+
 namespace sheen::fitting::spherical_harmonics {
 
 /// How spherical harmonics are fitted to the samples of a patch.
@@ -14,5 +16,8 @@ struct Options {
   /// Throws std::invalid_argument naming the option and its allowed values.
   void check() const;
 };
+
+/// What users choose of it.
+OptionTable option_table(Options& options);
 
 }  // namespace sheen::fitting::spherical_harmonics

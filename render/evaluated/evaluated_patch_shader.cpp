@@ -12,7 +12,6 @@
 #include <cassert>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 namespace sheen::render::evaluated {
@@ -26,9 +25,10 @@ Eigen::half half(float value) {
 class EvaluatedPatchShader final : public PatchShader {
  public:
   EvaluatedPatchShader(const gl::Functions& gl, const core::Mesh& mesh,
-                       const fitting::LightField& light_field)
+                       const fitting::PatchLightField& light_field, int threads)
       : mesh_(mesh),
         light_field_(light_field),
+        threads_(threads),
         all_(all_patches(light_field.patch_count())),
         texels_(light_field.patch_count()),
         buffer_(gl, light_field.patch_count(), 1) {
@@ -47,8 +47,7 @@ class EvaluatedPatchShader final : public PatchShader {
   void look_from(const Eigen::Vector3f& eye) override {
     // Nothing moved and nothing changed: the buffer still holds.
     if (eye_ && *eye_ == eye) return;
-    const int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-    core::parallel_for(texels_.size(), threads, [&](std::size_t begin, std::size_t end) {
+    core::parallel_for(texels_.size(), threads_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) texels_[i] = texel(i, eye);
     });
     buffer_.upload(all_, [this](std::size_t patch_idx, std::span<Eigen::half> halfs) {
@@ -70,7 +69,8 @@ class EvaluatedPatchShader final : public PatchShader {
   }
 
   const core::Mesh& mesh_;
-  const fitting::LightField& light_field_;
+  const fitting::PatchLightField& light_field_;
+  int threads_;
   std::vector<std::uint32_t> all_;
   std::vector<std::array<Eigen::half, 4>> texels_;
   PatchBuffer buffer_;
@@ -80,8 +80,9 @@ class EvaluatedPatchShader final : public PatchShader {
 }  // namespace
 
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl, const core::Mesh& mesh,
-                                               const fitting::LightField& light_field) {
-  return std::make_unique<EvaluatedPatchShader>(gl, mesh, light_field);
+                                               const fitting::PatchLightField& light_field,
+                                               int threads) {
+  return std::make_unique<EvaluatedPatchShader>(gl, mesh, light_field, threads);
 }
 
 }  // namespace sheen::render::evaluated

@@ -12,6 +12,7 @@ namespace sheen::render::evaluated {
 /// parallel, and sends 8 bytes per patch. The image is that of a shader of its own; the time per
 /// view is not. All must outlive it.
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl, const core::Mesh& mesh,
-                                               const fitting::LightField& light_field);
+                                               const fitting::PatchLightField& light_field,
+                                               int threads);
 
 }  // namespace sheen::render::evaluated

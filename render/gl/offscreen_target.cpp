@@ -3,6 +3,7 @@
 
 #include "core/diagnostics/error.h"
 
+#include <cassert>
 #include <string>
 #include <utility>
 
@@ -54,6 +55,13 @@ GLuint OffscreenTarget::framebuffer(int width_px, int height_px) {
   width_px_ = width_px;
   height_px_ = height_px;
   return framebuffer_.name();
+}
+
+void OffscreenTarget::replace(const cv::Mat& rgba) {
+  assert(with_colour_ && rgba.type() == CV_8UC4 && rgba.isContinuous());
+  framebuffer(rgba.cols, rgba.rows);
+  gl_.TextureSubImage2D(colour_.name(), 0, 0, 0, rgba.cols, rgba.rows, GL_RGBA, GL_UNSIGNED_BYTE,
+                        rgba.data);
 }
 
 }  // namespace sheen::render::gl

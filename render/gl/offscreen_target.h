@@ -3,6 +3,8 @@
 
 #include "render/gl/owners.h"
 
+#include <opencv2/core/mat.hpp>
+
 namespace sheen::render::gl {
 
 /// Framebuffer with a 32-bit float depth buffer and, if wanted, RGBA8 colour, of the size last
@@ -14,6 +16,9 @@ class OffscreenTarget {
   /// Framebuffer of this size, contents unspecified after a change of size. The context is
   /// current. Throws core::Error (run_failed) for sizes the driver cannot make.
   GLuint framebuffer(int width_px, int height_px);
+
+  /// Becomes an image, CV_8UC4 in the order R, G, B, A; for targets with colour.
+  void replace(const cv::Mat& rgba);
 
   /// Colour plane of the framebuffer last returned, for drawing it elsewhere; 0 without one.
   [[nodiscard]] GLuint colour_texture() const { return colour_.name(); }

@@ -41,10 +41,8 @@ class MeanPatchShader final : public PatchShader {
 }  // namespace
 
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
-                                               const fitting::LightField& light_field) {
-  const auto* const mean = dynamic_cast<const MeanLightField*>(&light_field);
-  assert(mean != nullptr);
-  return std::make_unique<MeanPatchShader>(gl, *mean);
+                                               const fitting::PatchLightField& light_field) {
+  return make_shader_of<MeanPatchShader, MeanLightField>(gl, light_field);
 }
 
 }  // namespace sheen::render::mean

@@ -113,10 +113,8 @@ class SparsePatchShader final : public PatchShader {
 }  // namespace
 
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
-                                               const fitting::LightField& light_field) {
-  const auto* const model = dynamic_cast<const LightFieldModel*>(&light_field);
-  assert(model != nullptr);
-  return std::make_unique<SparsePatchShader>(gl, *model);
+                                               const fitting::PatchLightField& light_field) {
+  return make_shader_of<SparsePatchShader, LightFieldModel>(gl, light_field);
 }
 
 }  // namespace sheen::render::sparse

@@ -9,6 +9,6 @@ namespace sheen::render::sparse {
 
 /// For light fields whose representation is "sparse".
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
-                                               const fitting::LightField& light_field);
+                                               const fitting::PatchLightField& light_field);
 
 }  // namespace sheen::render::sparse

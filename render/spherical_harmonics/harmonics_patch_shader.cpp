@@ -43,10 +43,8 @@ class HarmonicsPatchShader final : public PatchShader {
 }  // namespace
 
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
-                                               const fitting::LightField& light_field) {
-  const auto* const model = dynamic_cast<const LightFieldModel*>(&light_field);
-  assert(model != nullptr);
-  return std::make_unique<HarmonicsPatchShader>(gl, *model);
+                                               const fitting::PatchLightField& light_field) {
+  return make_shader_of<HarmonicsPatchShader, LightFieldModel>(gl, light_field);
 }
 
 }  // namespace sheen::render::spherical_harmonics

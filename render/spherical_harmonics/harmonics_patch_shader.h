@@ -9,6 +9,6 @@ namespace sheen::render::spherical_harmonics {
 
 /// For light fields whose representation is "sh".
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
-                                               const fitting::LightField& light_field);
+                                               const fitting::PatchLightField& light_field);
 
 }  // namespace sheen::render::spherical_harmonics

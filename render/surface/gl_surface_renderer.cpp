@@ -3,7 +3,7 @@
 #include "render/gl/offscreen_target.h"
 #include "render/surface/invalid_ray_mask.h"
 #include "render/surface/patch_shader.h"
-#include "render/surface/surface_pass.h"
+#include "render/surface/surface_layer.h"
 #include "render/surface/surface_renderer.h"
 
 #include <opencv2/core.hpp>
@@ -17,15 +17,15 @@ namespace {
 /// Alpha as shaders/surface.frag writes it: 0 background, 128 seen, 255 seen and supported.
 constexpr std::uint8_t kSupported = 255;
 
-class GlSurfaceRenderer final : public SurfaceRenderer {
+class GlSurfaceRenderer final : public Renderer {
  public:
   GlSurfaceRenderer(Context& context, const core::Mesh& mesh,
-                    const fitting::LightField& light_field)
+                    const fitting::PatchLightField& light_field, int threads)
       : context_(context),
         gl_(gl::load_functions(context)),
-        patches_(make_patch_shader(gl_, mesh, light_field)),
-        pass_(gl_, mesh, patches_->glsl()),
-        target_(gl_, true) {
+        layer_(gl_, mesh, make_patch_shader(gl_, mesh, light_field, threads)),
+        target_(gl_, true),
+        reads_light_field_(!has_patch_shader(light_field)) {
     assert(light_field.patch_count() == mesh.positions.size());
   }
 
@@ -35,19 +35,23 @@ class GlSurfaceRenderer final : public SurfaceRenderer {
   GlSurfaceRenderer(GlSurfaceRenderer&&) = delete;
   GlSurfaceRenderer& operator=(GlSurfaceRenderer&&) = delete;
 
-  void upload(const fitting::ModelUpdate& update) override {
+  std::size_t upload(std::span<const std::uint32_t> patches) override {
     context_.make_current();
-    patches_->upload(update.patches);
+    return layer_.upload(patches);
   }
+
+  void draw(gl::OffscreenTarget& target, const core::CameraModel& camera,
+            const Eigen::Isometry3d& camera_from_object) override {
+    layer_.draw(target, camera, camera_from_object);
+  }
+
+  [[nodiscard]] bool reads_light_field() const override { return reads_light_field_; }
 
   RenderedView render(const core::CameraModel& camera,
                       const Eigen::Isometry3d& camera_from_object) override {
     // Draw.
     context_.make_current();
-    const GLuint framebuffer = target_.framebuffer(camera.width_px(), camera.height_px());
-    patches_->look_from(core::eye_in_object(camera_from_object));
-    patches_->bind();
-    pass_.draw(framebuffer, camera, camera_from_object);
+    layer_.draw(target_, camera, camera_from_object);
 
     // Read back; four bytes per pixel, so rows need no padding.
     pixels_.create(camera.height_px(), camera.width_px(), CV_8UC4);
@@ -72,18 +76,19 @@ class GlSurfaceRenderer final : public SurfaceRenderer {
 
   Context& context_;
   gl::Functions gl_;
-  std::unique_ptr<PatchShader> patches_;
-  SurfacePass pass_;
+  SurfaceLayer layer_;
   gl::OffscreenTarget target_;
+  bool reads_light_field_;
   InvalidRayMask invalid_rays_;
   cv::Mat pixels_;
 };
 
 }  // namespace
 
-std::unique_ptr<SurfaceRenderer> make_gl_surface_renderer(Context& context, const core::Mesh& mesh,
-                                                          const fitting::LightField& light_field) {
-  return std::make_unique<GlSurfaceRenderer>(context, mesh, light_field);
+std::unique_ptr<Renderer> make_gl_surface_renderer(Context& context, const core::Mesh& mesh,
+                                                   const fitting::PatchLightField& light_field,
+                                                   int threads) {
+  return std::make_unique<GlSurfaceRenderer>(context, mesh, light_field, threads);
 }
 
 }  // namespace sheen::render

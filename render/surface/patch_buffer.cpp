@@ -2,7 +2,7 @@
 #include "render/surface/patch_buffer.h"
 
 #include "core/diagnostics/error.h"
-#include "fitting/light_field.h"
+#include "fitting/patch_light_field.h"
 
 #include <algorithm>
 #include <cassert>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/mesh/mesh.h"
-#include "fitting/light_field.h"
+#include "fitting/patch_light_field.h"
 #include "render/gl/functions.h"
 
 #include <Eigen/Core>
@@ -40,15 +40,24 @@ class PatchShader {
 /// must outlive it. Throws core::Error (run_failed) when the representation cannot be drawn, or is
 /// too large for the driver.
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
-                                               const fitting::LightField& light_field);
+                                               const fitting::PatchLightField& light_field);
 
 /// The same, and for a representation without a shader of its own one that shows what the CPU
-/// evaluates for each view (render/evaluated). `mesh` must outlive it too: its vertices are the
-/// patches.
+/// evaluates for each view on `threads` threads (render/evaluated). `mesh` must outlive it too:
+/// its vertices are the patches.
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl, const core::Mesh& mesh,
-                                               const fitting::LightField& light_field);
+                                               const fitting::PatchLightField& light_field,
+                                               int threads);
 
-/// Whether the representation has a shader of its own, which reads the light field in `upload` only.
-bool has_patch_shader(const fitting::LightField& light_field);
+/// Whether the representation has a shader of its own, which reads the light field in `upload`
+/// only.
+bool has_patch_shader(const fitting::PatchLightField& light_field);
+
+/// The shader class of one representation, made from its model.
+template <typename Shader, typename Model>
+std::unique_ptr<PatchShader> make_shader_of(const gl::Functions& gl,
+                                            const fitting::PatchLightField& light_field) {
+  return std::make_unique<Shader>(gl, dynamic_cast<const Model&>(light_field));
+}
 
 }  // namespace sheen::render

@@ -14,7 +14,8 @@
 namespace sheen::render {
 namespace {
 
-using Factory = std::unique_ptr<PatchShader> (*)(const gl::Functions&, const fitting::LightField&);
+using Factory = std::unique_ptr<PatchShader> (*)(const gl::Functions&,
+                                                 const fitting::PatchLightField&);
 
 /// One line per representation.
 constexpr std::pair<std::string_view, Factory> kPatchShaders[] = {
@@ -25,7 +26,7 @@ constexpr std::pair<std::string_view, Factory> kPatchShaders[] = {
 };
 
 // Null when there is none.
-Factory factory_of(const fitting::LightField& light_field) {
+Factory factory_of(const fitting::PatchLightField& light_field) {
   for (const auto& [name, make] : kPatchShaders) {
     if (name == light_field.representation()) return make;
   }
@@ -34,12 +35,12 @@ Factory factory_of(const fitting::LightField& light_field) {
 
 }  // namespace
 
-bool has_patch_shader(const fitting::LightField& light_field) {
+bool has_patch_shader(const fitting::PatchLightField& light_field) {
   return factory_of(light_field) != nullptr;
 }
 
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
-                                               const fitting::LightField& light_field) {
+                                               const fitting::PatchLightField& light_field) {
   if (const Factory make = factory_of(light_field)) return make(gl, light_field);
   throw core::Error(core::Error::Kind::run_failed,
                     "representation " + std::string(light_field.representation()),
@@ -47,9 +48,10 @@ std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl,
 }
 
 std::unique_ptr<PatchShader> make_patch_shader(const gl::Functions& gl, const core::Mesh& mesh,
-                                               const fitting::LightField& light_field) {
+                                               const fitting::PatchLightField& light_field,
+                                               int threads) {
   if (const Factory make = factory_of(light_field)) return make(gl, light_field);
-  return evaluated::make_patch_shader(gl, mesh, light_field);
+  return evaluated::make_patch_shader(gl, mesh, light_field, threads);
 }
 
 }  // namespace sheen::render

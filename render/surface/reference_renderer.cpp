@@ -21,9 +21,10 @@ struct PixelHit {
   Eigen::Vector3f barycentric = Eigen::Vector3f::Zero();
 };
 
-class ReferenceRenderer final : public SurfaceRenderer {
+class ReferenceRenderer final : public Renderer {
  public:
-  ReferenceRenderer(const core::Mesh& mesh, const fitting::LightField& light_field, int threads)
+  ReferenceRenderer(const core::Mesh& mesh, const fitting::PatchLightField& light_field,
+                    int threads)
       : mesh_(mesh),
         light_field_(light_field),
         threads_(threads),
@@ -33,7 +34,7 @@ class ReferenceRenderer final : public SurfaceRenderer {
   }
 
   /// Nothing to do: the light field is read at every image.
-  void upload(const fitting::ModelUpdate& /*update*/) override {}
+  std::size_t upload(std::span<const std::uint32_t> /*patches*/) override { return 0; }
 
   RenderedView render(const core::CameraModel& camera,
                       const Eigen::Isometry3d& camera_from_object) override {
@@ -125,7 +126,7 @@ class ReferenceRenderer final : public SurfaceRenderer {
   inline static const fitting::WeightedColour kNothing{Eigen::Vector3f::Zero(), 1.0f};
 
   const core::Mesh& mesh_;
-  const fitting::LightField& light_field_;
+  const fitting::PatchLightField& light_field_;
   int threads_;
   core::RayCaster caster_;
   std::vector<core::TangentFrame> frames_;
@@ -136,8 +137,8 @@ class ReferenceRenderer final : public SurfaceRenderer {
 
 }  // namespace
 
-std::unique_ptr<SurfaceRenderer> make_reference_surface_renderer(
-    const core::Mesh& mesh, const fitting::LightField& light_field, int threads) {
+std::unique_ptr<Renderer> make_reference_surface_renderer(
+    const core::Mesh& mesh, const fitting::PatchLightField& light_field, int threads) {
   return std::make_unique<ReferenceRenderer>(mesh, light_field, threads);
 }
 

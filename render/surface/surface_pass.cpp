@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "render/surface/surface_pass.h"
 
-#include "fitting/light_field.h"
+#include "core/mesh/bounds.h"
+#include "fitting/patch_light_field.h"
 #include "render/gl/program.h"
 #include "render/shaders/shader_text.h"
 #include "render/surface/view_block.h"
@@ -90,8 +91,7 @@ void SurfacePass::draw(GLuint target, const core::CameraModel& camera,
 
 void SurfacePass::measure(const core::Mesh& mesh) {
   assert(!mesh.positions.empty() && mesh.normals.size() == mesh.positions.size());
-  Eigen::AlignedBox3f box;
-  for (const Eigen::Vector3f& position : mesh.positions) box.extend(position);
+  const Eigen::AlignedBox3f box = core::bounds_of(mesh);
   float radius = 0;
   for (const Eigen::Vector3f& position : mesh.positions) {
     radius = std::max(radius, (position - box.center()).norm());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What `sheen compare` measures is complete and finite, its fronts are the points nobody beats, and
 // its advice follows from its figures.
-#include "app/comparison/advice.h"
-#include "app/comparison/pareto.h"
+#include "evaluation/comparison/advice.h"
+#include "evaluation/comparison/pareto.h"
 #include "tests/app/program.h"
 
 #include <gtest/gtest.h>

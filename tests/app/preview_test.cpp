@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "app/pipeline/model_stage.h"
-#include "app/pipeline/pipeline.h"
-#include "app/pipeline/session_parts.h"
 #include "app/preview/drawn_part.h"
 #include "app/preview/live_session.h"
 #include "app/preview/orbit_camera.h"
@@ -13,6 +10,9 @@
 #include "core/visibility/ray_visibility.h"
 #include "fitting/model_file/model_file.h"
 #include "fitting/registry.h"
+#include "pipeline/model_stage.h"
+#include "pipeline/pipeline.h"
+#include "pipeline/session_parts.h"
 #include "tests/app/program.h"
 #include "tests/core/shapes.h"
 

@@ -48,7 +48,7 @@ class ViewerWindow : public ::testing::Test {
 
   // What the window shows, by its own snapshot.
   cv::Mat image() {
-    window_->obey(Command::snapshot);
+    window_->obey(ViewCommand::snapshot);
     window_->redraw(0);
     return window_->image().clone();
   }

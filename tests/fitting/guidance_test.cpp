@@ -83,25 +83,27 @@ TEST(ViewUtility, PerfectPredictionsNeedNoViewsThere) {
   // the camera's noise (.01 squared) is what remains.
   constexpr std::size_t patches = 3;
   const auto model = make("mean", patches);
-  ViewUtility need(patches);
+  ViewUtility utility(patches);
   for (int i = 0; i < 100; ++i) {
     const auto batch = view(patches, {0.1, 0.1}, {0.5, 0.4, 0.3});
-    need.score(batch, model->light_field());
-    need.note(batch);
+    utility.score(batch, model->light_field());
+    utility.note(batch);
     model->integrate(batch);
   }
-  EXPECT_LE(need.seen_direction_error(0), 1.1e-4f);
+  EXPECT_LE(utility.seen_direction_error(0), 1.1e-4f);
   const DirectionCells seen = cell_bit(cell_of({0.1f, 0.1f}));
-  EXPECT_EQ(need.patches()[0].seen, seen);
-  EXPECT_EQ(missing_variance(need.patches()[0].seen, seen, need.unseen_direction_error(0)), 0);
-  EXPECT_GT(missing_variance(need.patches()[0].seen, kAll, need.unseen_direction_error(0)), 0);
+  EXPECT_EQ(utility.patches()[0].seen, seen);
+  EXPECT_EQ(missing_variance(utility.patches()[0].seen, seen, utility.unseen_direction_error(0)),
+            0);
+  EXPECT_GT(missing_variance(utility.patches()[0].seen, kAll, utility.unseen_direction_error(0)),
+            0);
 }
 
 TEST(ViewUtility, TellsMissingViewsFromAModelThatIsTooSimple) {
   // Patch 0 keeps its colour but is seen from one side only; patch 1 flickers between .2 and .8 and
   // is seen from all sides in turn. The first needs views; the second does not fit.
   const auto model = make("mean", 2);
-  ViewUtility need(2);
+  ViewUtility utility(2);
   DirectionCells swept = 0;
   for (int i = 0; i < 400; ++i) {
     core::SampleBatch batch;
@@ -109,31 +111,33 @@ TEST(ViewUtility, TellsMissingViewsFromAModelThatIsTooSimple) {
     swept |= cell_bit(cell_of(side.cast<float>()));
     testing::add_sample(batch, 0, {0.1, 0}, {0.5, 0.5, 0.5});
     testing::add_sample(batch, 1, side, Eigen::Vector3d::Constant(i % 2 == 0 ? 0.2 : 0.8));
-    need.score(batch, model->light_field());
-    need.note(batch);
+    utility.score(batch, model->light_field());
+    utility.note(batch);
     model->integrate(batch);
   }
-  EXPECT_GT(missing_variance(need.patches()[0].seen, swept, need.unseen_direction_error(0)), 0);
-  EXPECT_EQ(missing_variance(need.patches()[1].seen, swept, need.unseen_direction_error(1)), 0);
+  EXPECT_GT(missing_variance(utility.patches()[0].seen, swept, utility.unseen_direction_error(0)),
+            0);
+  EXPECT_EQ(missing_variance(utility.patches()[1].seen, swept, utility.unseen_direction_error(1)),
+            0);
   // The flicker is .3 either side of the mean: .09 squared. A steady patch is at the noise floor.
-  EXPECT_NEAR(need.seen_direction_error(1), 0.09f, 0.01f);
-  EXPECT_LT(need.seen_direction_error(0), 0.02f);
+  EXPECT_NEAR(utility.seen_direction_error(1), 0.09f, 0.01f);
+  EXPECT_LT(utility.seen_direction_error(0), 0.02f);
 }
 
 TEST(ViewUtility, IgnoresWhatIsNotANumber) {
   const auto model = make("mean", 1);
-  ViewUtility need(1);
+  ViewUtility utility(1);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (const auto& batch : {view(1, {0, 0}, {0.5, 0.5, 0.5}), view(1, {nan, 0}, {0.5, 0.5, 0.5}),
                             view(1, {0, 0}, {nan, 0.5, 0.5}), view(1, {0, 0}, {0.5, 0.5, 0.5})}) {
-    const FrameScore score = need.score(batch, model->light_field());
+    const FrameScore score = utility.score(batch, model->light_field());
     EXPECT_TRUE(std::isfinite(score.squared_error) && std::isfinite(score.normalised_residual));
-    need.note(batch);
+    utility.note(batch);
     model->integrate(batch);
   }
-  EXPECT_EQ(need.patches()[0].samples, 2u);
-  EXPECT_TRUE(std::isfinite(need.unseen_direction_error(0)) &&
-              std::isfinite(need.seen_direction_error(0)));
+  EXPECT_EQ(utility.patches()[0].samples, 2u);
+  EXPECT_TRUE(std::isfinite(utility.unseen_direction_error(0)) &&
+              std::isfinite(utility.seen_direction_error(0)));
 }
 
 TEST(Coverage, GoesFromNothingToAll) {
@@ -254,32 +258,32 @@ TEST_F(CandidatesRoundASphere, PlacesKeepTheirDistanceAboveTheBoard) {
 
 TEST_F(CandidatesRoundASphere, ThePlaceJustVisitedHasNothingMoreToOffer) {
   const auto model = make("mean", mesh_.positions.size());
-  ViewUtility need(mesh_.positions.size());
+  ViewUtility utility(mesh_.positions.size());
   const auto batch = seen_from(views_.places()[10]);
-  need.score(batch, model->light_field());
-  need.note(batch);
+  utility.score(batch, model->light_field());
+  utility.note(batch);
   const auto gains =
-      views_.gains(need.patches(), smooth_unseen_direction_errors(need, neighbours_), area_);
+      views_.gains(utility.patches(), smooth_unseen_direction_errors(utility, neighbours_), area_);
   EXPECT_NEAR(gains[10], 0, 1e-12);
   EXPECT_GT(*std::max_element(gains.begin(), gains.end()), 0);
 }
 
 TEST_F(CandidatesRoundASphere, VisitingEveryPlaceCoversTheObject) {
   const auto model = make("mean", mesh_.positions.size());
-  ViewUtility need(mesh_.positions.size());
+  ViewUtility utility(mesh_.positions.size());
   double last = 0;
   for (const Eigen::Vector3f& place : views_.places()) {
     const auto batch = seen_from(place);
-    need.score(batch, model->light_field());
-    need.note(batch);
+    utility.score(batch, model->light_field());
+    utility.note(batch);
     model->integrate(batch);
-    const double now = coverage(need.patches(), views_.reachable(), area_);
+    const double now = coverage(utility.patches(), views_.reachable(), area_);
     EXPECT_GE(now, last);
     last = now;
   }
   EXPECT_DOUBLE_EQ(last, 1);
   const auto gains =
-      views_.gains(need.patches(), smooth_unseen_direction_errors(need, neighbours_), area_);
+      views_.gains(utility.patches(), smooth_unseen_direction_errors(utility, neighbours_), area_);
   EXPECT_FALSE(next_best_view(views_.places(), gains, {0, 0, 0}, {5, 0, 0}));
 }
 

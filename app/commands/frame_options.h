@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "app/command_line/command_line.h"
+#include "pipeline/options.h"
+
+namespace sheen::app {
+
+/// Which frames of a session are taken and where their poses come from: the same words for every
+/// command.
+void add_frame_options(Command command, pipeline::FrameChoice& choice);
+
+}  // namespace sheen::app

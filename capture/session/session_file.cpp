@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "capture/session/session_file.h"
+
+#include "capture/files/text_file.h"
+#include "core/diagnostics/error.h"
+#include "core/files/write_file.h"
+
+#include <nlohmann/json.hpp>
+
+namespace sheen::capture {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+
+ordered_json transform_json(const Eigen::Isometry3d& transform) {
+  auto numbers = ordered_json::array();
+  for (Eigen::Index i = 0; i < 16; ++i) numbers.push_back(transform.matrix()(i / 4, i % 4));
+  return numbers;
+}
+
+template <typename Value>
+void put(ordered_json& object, const char* key, const std::optional<Value>& value) {
+  if (value) object[key] = *value;
+}
+
+void write_json(const std::filesystem::path& path, const ordered_json& document) {
+  core::write_file(path,
+                   document.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+}
+
+}  // namespace
+
+void write_session_file(const std::filesystem::path& folder, const SessionFile& session) {
+  ordered_json frames;
+  put(frames, "video", session.video);
+  put(frames, "images", session.images);
+  put(frames, "fps", session.fps);
+  put(frames, "stamps", session.stamps);
+  ordered_json document{{"format", "sheen-session"},
+                        {"version", 1},
+                        {"frames", std::move(frames)},
+                        {"camera", session.camera}};
+  put(document, "board", session.board);
+  put(document, "poses", session.poses);
+  document["object"] = {{"mesh", session.mesh},
+                        {"T_stage_object", transform_json(session.board_from_object)}};
+  write_json(folder / "session.json", document);
+}
+
+void write_board_from_object(const std::filesystem::path& from, const std::filesystem::path& to,
+                             const Eigen::Isometry3d& board_from_object) {
+  auto session = ordered_json::parse(read_text_file(from, kMaxBytes), nullptr, false);
+  if (!session.is_object() || !session.contains("object") || !session["object"].is_object()) {
+    throw core::bad_input(from, "holds no \"object\"", "see docs/session-format.md");
+  }
+  session["object"]["T_stage_object"] = transform_json(board_from_object);
+  write_json(to, session);
+}
+
+}  // namespace sheen::capture

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Geometry>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace sheen::capture {
+
+/// What a new session.json says (docs/session-format.md); paths are relative to its folder. Either
+/// `video` or `images` is set, and `board` or `poses` or both.
+struct SessionFile {
+  std::optional<std::string> video{};
+  std::optional<std::string> images{};  ///< printf pattern, images/%04d.png
+  std::optional<double> fps{};
+  std::optional<std::string> stamps{};
+  std::string camera = "camera.yaml";
+  std::optional<std::string> board{};
+  std::optional<std::string> poses{};
+  std::string mesh = "object.ply";
+  Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();
+};
+
+/// Writes `folder`/session.json. Throws core::Error (run_failed).
+void write_session_file(const std::filesystem::path& folder, const SessionFile& session);
+
+/// Writes the session.json `from` with another place of the object as `to`, which may be the same
+/// file; everything else stays as it is. Throws core::Error (bad_input) when it holds no object.
+void write_board_from_object(const std::filesystem::path& from, const std::filesystem::path& to,
+                             const Eigen::Isometry3d& board_from_object);
+
+}  // namespace sheen::capture

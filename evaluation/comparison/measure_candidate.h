@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "core/image/metrics.h"
+#include "evaluation/comparison/candidates.h"
+#include "evaluation/comparison/observations.h"
+#include "render/context/context.h"
+
+#include <filesystem>
+
+namespace sheen::evaluation {
+
+/// Everything measured of one candidate on one recording.
+struct Measurement {
+  core::ImageError error;  ///< means over the held-out views
+  std::size_t views = 0;   ///< held-out views that show the object
+  std::size_t samples = 0;
+  std::size_t patches = 0;
+  std::size_t coefficients = 0;
+  std::uintmax_t model_bytes = 0;
+  double fit_ms = 0;          ///< CPU, all frames and `finish`
+  double fit_frame_ms = 0;    ///< fit_ms over the fitted frames
+  double render_view_ms = 0;  ///< CPU per view, median: the first draws compile shaders
+};
+
+/// Fits, saves to `scratch` (removed again), draws the held-out views and compares. Throws
+/// core::Error (run_failed) for models the driver cannot draw.
+Measurement measure_candidate(const Candidate& candidate, const Observations& observations,
+                              render::Context& gl, const std::filesystem::path& scratch,
+                              int threads, pipeline::ProgressSink& sink);
+
+}  // namespace sheen::evaluation

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#include "evaluation/comparison/observations.h"
+
+#include "core/diagnostics/error.h"
+#include "core/visibility/raster_visibility.h"
+#include "pipeline/check_seen.h"
+#include "pipeline/frame_loop.h"
+#include "pipeline/hold_out.h"
+#include "pipeline/observation_replay.h"
+#include "pipeline/pose_frames.h"
+#include "pipeline/session_parts.h"
+
+#include <utility>
+
+namespace sheen::evaluation {
+namespace {
+
+pipeline::ViewObserver make_observer(const core::Mesh& mesh, int threads) {
+  return {mesh, core::make_raster_visibility(mesh, threads), {}, threads};
+}
+
+/// Poses and samples every frame that is not held out; those that are go to the observations, too.
+void observe_frames(const pipeline::FrameChoice& choice, int threads, pipeline::ProgressSink& sink,
+                    Observations& observations) {
+  const capture::Session& session = observations.session;
+  const pipeline::HoldOut hold_out{observations.has_own_held_out ? 0 : choice.hold_out};
+  pipeline::PoseStage poses(
+      capture::open_frames(session, choice.start, choice.end),
+      pipeline::make_pose_estimator(session, choice.pose_source, choice.gate));
+  pipeline::ViewObserver observer = make_observer(observations.mesh, threads);
+  pipeline::FrameStatistics frames;
+  std::size_t samples = 0;
+  pipeline::for_each_frame(poses, threads > 1, [&](pipeline::TrackedFrame& tracked) {
+    const auto posed = frames.count(tracked);
+    sink.progress({"observing", frames.frames_read});
+    if (!posed) return;
+    frames.posed.push_back(*posed);
+    if (hold_out.contains(posed->index)) {
+      observations.held_out.push_back(*posed);
+      return;
+    }
+    const auto camera_from_object = posed->camera_from_board * session.board_from_object;
+    const auto observation = observer.observe(posed->index, tracked.frame.image,
+                                              session.camera_of(posed->index), camera_from_object);
+    observations.views.push_back({posed->index, camera_from_object, 1});
+    observations.samples.push_back(observation.samples);
+    samples += observation.samples.size();
+  });
+  pipeline::check_something_was_seen(session, frames, samples);
+}
+
+void check_views_are_held_out(const Observations& observations) {
+  if (!observations.held_out.empty()) return;
+  throw core::bad_input(observations.held_out_session.folder,
+                        "has no posed view that is held out of the fit",
+                        "use a smaller --hold-out, 2 or more, or give the session a held_out/ "
+                        "folder with posed views");
+}
+
+}  // namespace
+
+Observations observe_session(const std::filesystem::path& folder,
+                             const pipeline::FrameChoice& choice, int threads,
+                             pipeline::ProgressSink& sink) {
+  Observations observations;
+  observations.session = capture::open_session(folder);
+  observations.mesh = pipeline::read_object_mesh(observations.session.mesh);
+  const auto own_views = folder / "held_out";
+  observations.has_own_held_out = std::filesystem::exists(own_views / "session.json");
+  observe_frames(choice, threads, sink, observations);
+  observations.held_out_session = observations.session;
+  if (observations.has_own_held_out) {
+    observations.held_out_session = capture::open_session(own_views);
+    observations.held_out = pipeline::pose_frames(observations.held_out_session, {}, sink);
+  }
+  check_views_are_held_out(observations);
+  return observations;
+}
+
+void integrate_all(const Observations& observations, int threads, fitting::Fitter& fitter,
+                   pipeline::ProgressSink& sink) {
+  int done = 0;
+  const auto integrate = [&](const core::Observation& observation) {
+    fitter.integrate(observation);
+    sink.progress({"fitting", ++done, static_cast<int>(observations.views.size())});
+  };
+  if (fitter.needs_images()) {
+    pipeline::ViewObserver observer = make_observer(observations.mesh, threads);
+    pipeline::replay_observations(observations.session, observations.views, observer, integrate);
+    return;
+  }
+  const cv::Mat no_image;
+  const core::VertexView no_view;
+  for (std::size_t i = 0; i < observations.views.size(); ++i) {
+    const pipeline::IntegratedView& view = observations.views[i];
+    integrate({view.frame_index, no_image, observations.session.camera_of(view.frame_index),
+               view.camera_from_object, no_view, observations.samples[i]});
+  }
+}
+
+}  // namespace sheen::evaluation

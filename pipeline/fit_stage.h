@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/session/session.h"
+#include "pipeline/frame_statistics.h"
+#include "pipeline/hold_out.h"
+#include "pipeline/options.h"
+#include "pipeline/photometric_aligner.h"
+#include "pipeline/pose_stage.h"
+#include "pipeline/shared_model.h"
+#include "pipeline/view_observer.h"
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace sheen::pipeline {
+
+/// A view as it was integrated: enough to observe it once more.
+struct IntegratedView {
+  int frame_index = 0;
+  Eigen::Isometry3d camera_from_object = Eigen::Isometry3d::Identity();
+  double gain = 1;  ///< by which its samples were divided
+};
+
+/// Second stage: posed image -> observation -> fit. The only place that counts frames.
+class FitStage {
+ public:
+  /// What it works with; borrowed.
+  struct Parts {
+    const capture::Session& session;
+    const core::Mesh& mesh;
+    ViewObserver& observer;
+    SharedModel& model;
+    fitting::Fitter* mean;  ///< integrates the same samples for comparison; may be null
+    HoldOut hold_out;
+    PhotometricOptions photometric = {};
+    /// Asked before a frame's samples are integrated, on the thread that fits; false keeps them
+    /// out. May be empty.
+    std::function<bool(const core::SampleBatch&)> admit = {};
+  };
+
+  explicit FitStage(Parts parts);
+
+  /// Takes a frame into the model unless it has no pose or is held out.
+  void integrate(TrackedFrame& tracked);
+
+  /// A frame's pose refined against the light field as it is now, or as it was when that cannot be
+  /// said. Only with `refine_poses`; changes no statistics.
+  PosedFrame refined(const capture::Frame& frame, PosedFrame posed);
+
+  [[nodiscard]] const FrameStatistics& statistics() const { return statistics_; }
+  /// In order; only those that the model still holds after an undo are of use.
+  [[nodiscard]] const std::vector<IntegratedView>& integrated() const { return integrated_; }
+
+ private:
+  void observe(const capture::Frame& frame, core::StageTimes& times, PosedFrame& posed);
+  std::optional<core::Alignment> align(const capture::Frame& frame, PosedFrame& posed);
+  double correct_exposure(core::SampleBatch& batch);
+  void fit(const core::Observation& observation, core::StageTimes& times);
+
+  Parts parts_;
+  std::optional<PhotometricAligner> aligner_;  ///< where something is adjusted
+  FrameStatistics statistics_;
+  std::vector<IntegratedView> integrated_;
+};
+
+}  // namespace sheen::pipeline

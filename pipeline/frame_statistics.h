@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "core/samples/vertex_view.h"
+
+#include <Eigen/Geometry>
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sheen::pipeline {
+
+/// A frame that got a pose.
+struct PosedFrame {
+  int index = 0;
+  double time_s = 0;
+  Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
+};
+
+struct TrackedFrame;
+
+/// Everything that is counted while frames arrive.
+struct FrameStatistics {
+  int frames_read = 0;
+  int frames_fitted = 0;
+  int frames_refused = 0;                      ///< posed, but not admitted to the model
+  std::vector<PosedFrame> posed;               ///< in recorded order, held-out ones included
+  std::vector<PosedFrame> held_out;            ///< posed, kept out of the fit
+  std::map<std::string, int> pose_rejections;  ///< by name of PoseRejection
+  std::array<std::size_t, core::kVertexRejectionCount> vertex_rejections{};
+  std::vector<double> reprojection_px;  ///< of frames posed from tags
+  std::vector<double> refined_px;       ///< mean motion of every frame whose pose was refined
+  std::vector<double> gains;            ///< exposure of every frame that told it
+
+  /// Counts a frame as read, and why it has no pose if it has none.
+  std::optional<PosedFrame> count(const TrackedFrame& tracked);
+};
+
+}  // namespace sheen::pipeline

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/reconstruct.h"
+
+#include "core/diagnostics/cpu_clock.h"
+#include "core/visibility/raster_visibility.h"
+#include "fitting/descriptor.h"
+#include "fitting/guidance/capture_score.h"
+#include "pipeline/check_seen.h"
+#include "pipeline/frame_loop.h"
+#include "pipeline/observation_replay.h"
+#include "pipeline/patch_mesh.h"
+#include "pipeline/session_board.h"
+#include "pipeline/session_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace sheen::pipeline {
+namespace {
+
+constexpr const char* kMean = "mean";
+
+/// Refines the board where it is asked for and the poses come from its tags.
+std::optional<capture::BoardRefinement> refine_board(const capture::Session& session,
+                                                     const ReconstructionOptions& options,
+                                                     ProgressSink& sink) {
+  if (!options.refine_board) return std::nullopt;
+  if (takes_poses_from_file(session, options.frames.pose_source)) {
+    sink.note("the poses come from a file, --refine-board changes nothing");
+    return std::nullopt;
+  }
+  auto refinement = refine_session_board(session, options.frames.start, options.frames.end, sink);
+  if (!refinement) sink.note("too few tags are seen together to refine the board");
+  return refinement;
+}
+
+std::unique_ptr<core::Visibility> make_visibility(const VisibilityFactory& factory,
+                                                  const core::Mesh& mesh, int threads) {
+  return factory ? factory(mesh, threads) : core::make_raster_visibility(mesh, threads);
+}
+
+}  // namespace
+
+struct Reconstruction::Impl {
+  Impl(ReconstructionInputs inputs, const ReconstructionOptions& wanted, ProgressSink& sink);
+
+  core::Mesh read_mesh() const;
+  std::unique_ptr<capture::PoseEstimator> pose_estimator() const;
+  std::unique_ptr<fitting::Fitter> make_fitter(const std::string& name,
+                                               const fitting::OptionValues& values,
+                                               fitting::UndoableFitter*& history);
+  bool admit(const core::SampleBatch& batch, FrameListener* listener);
+  void finish();
+
+  ReconstructionOptions options;
+  capture::Session session;
+  std::optional<capture::BoardRefinement> board;
+  core::Mesh mesh;
+  std::unique_ptr<ViewObserver> observer;
+  VisibilityFactory visibility;
+  std::unique_ptr<fitting::Fitter> fitter;
+  std::unique_ptr<fitting::Fitter> mean;
+  fitting::UndoableFitter* history = nullptr;
+  fitting::UndoableFitter* mean_history = nullptr;
+  std::unique_ptr<SharedModel> model;
+  std::optional<fitting::guidance::CaptureScore> score;  ///< where mismatches are refused
+  std::optional<PoseStage> poses;
+  std::optional<int> frame_count;
+  std::optional<FitStage> stage;
+  FrameListener* listener = nullptr;
+  core::StageTimer times;
+  double finish_cpu_ms = 0;
+};
+
+Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOptions& wanted,
+                           ProgressSink& sink)
+    : options(wanted),
+      session(std::move(inputs.session)),
+      board(refine_board(session, options, sink)),
+      mesh(read_mesh()),
+      observer(std::make_unique<ViewObserver>(
+          mesh, make_visibility(inputs.make_visibility, mesh, options.threads), options.limits,
+          options.threads)),
+      visibility(inputs.make_visibility) {
+  fitter = make_fitter(options.representation, options.fit, history);
+  if (options.with_mean && options.representation != kMean) {
+    mean = make_fitter(kMean, {}, mean_history);
+  }
+  model = std::make_unique<SharedModel>(*fitter);
+  if (options.refuse_mismatches) {
+    const auto& patches = fitting::require_patches(fitter->light_field(), "--refuse-mismatches");
+    score.emplace(patches.patch_count());
+  }
+  auto frames = inputs.frames
+                    ? std::move(inputs.frames)
+                    : capture::open_frames(session, options.frames.start, options.frames.end);
+  frame_count = frames->frame_count();
+  poses.emplace(std::move(frames), pose_estimator());
+  stage.emplace(FitStage::Parts{
+      .session = session,
+      .mesh = mesh,
+      .observer = *observer,
+      .model = *model,
+      .mean = mean.get(),
+      .hold_out = {options.frames.hold_out},
+      .photometric = options.photometric,
+      .admit = [this](const core::SampleBatch& batch) { return admit(batch, listener); }});
+}
+
+std::unique_ptr<capture::PoseEstimator> Reconstruction::Impl::pose_estimator() const {
+  return make_pose_estimator(session, options.frames.pose_source, options.frames.gate,
+                             board ? &board->board : nullptr);
+}
+
+/// Refined to the images' resolution when patches are texels.
+core::Mesh Reconstruction::Impl::read_mesh() const {
+  core::Mesh read = read_object_mesh(session.mesh);
+  if (options.patches == Patches::vertex) return read;
+  const auto footprint_m = pixel_footprint_m(session, read, *pose_estimator());
+  if (!footprint_m) return read;  // the run itself will say why no frame is posed
+  return texel_mesh(read, *footprint_m, options.texel_px);
+}
+
+std::unique_ptr<fitting::Fitter> Reconstruction::Impl::make_fitter(
+    const std::string& name, const fitting::OptionValues& values,
+    fitting::UndoableFitter*& undoable) {
+  const auto make = [this, name, values] {
+    return fitting::make_fitter(name, mesh, values, options.threads);
+  };
+  if (!options.undoable) return make();
+  auto remembering = std::make_unique<fitting::UndoableFitter>(
+      make, [this](std::span<const int> frames, const auto& observe) {
+        std::vector<IntegratedView> views;
+        for (const IntegratedView& view : stage->integrated()) {
+          if (std::ranges::binary_search(frames, view.frame_index)) views.push_back(view);
+        }
+        // Of its own: the other one may be at work on the next frame's samples.
+        ViewObserver again(mesh, make_visibility(visibility, mesh, options.threads), options.limits,
+                           options.threads);
+        replay_observations(session, views, again, observe);
+      });
+  undoable = remembering.get();
+  return remembering;
+}
+
+/// Asks the listener, and where mismatches are refused what earlier views say.
+bool Reconstruction::Impl::admit(const core::SampleBatch& batch, FrameListener* asked) {
+  if (asked != nullptr) return asked->admit(batch);
+  if (!score) return true;
+  const auto verdict = model->with([&](const fitting::Fitter& fitted) {
+    return score->judge(batch, *fitting::as_patches(fitted.light_field()));
+  });
+  if (verdict != fitting::guidance::FrameVerdict::fine) return false;
+  score->note(batch, 0);
+  return true;
+}
+
+void Reconstruction::Impl::finish() {
+  const double start_ms = core::own_cpu_ms();
+  model->finish();
+  finish_cpu_ms = core::own_cpu_ms() - start_ms;
+  if (mean) mean->finish();
+}
+
+Reconstruction::Reconstruction(ReconstructionInputs inputs, const ReconstructionOptions& options,
+                               ProgressSink& sink)
+    : impl_(std::make_unique<Impl>(std::move(inputs), options, sink)) {}
+
+Reconstruction::~Reconstruction() = default;
+Reconstruction::Reconstruction(Reconstruction&& other) noexcept = default;
+Reconstruction& Reconstruction::operator=(Reconstruction&& other) noexcept = default;
+
+void Reconstruction::run(ProgressSink& sink, FrameListener* listener) {
+  impl_->listener = listener;
+  const FrameStatistics& frames = impl_->stage->statistics();
+  impl_->times =
+      for_each_frame(*impl_->poses, impl_->options.threads > 1, [&](TrackedFrame& tracked) {
+        impl_->stage->integrate(tracked);
+        sink.progress({"fitting", frames.frames_read, impl_->frame_count.value_or(0),
+                       fmt::format("{} posed", frames.posed.size())});
+        if (listener != nullptr) listener->on_frame(tracked, frames);
+      });
+  check_something_was_seen(impl_->session, frames, impl_->fitter->statistics().samples);
+  impl_->finish();
+}
+
+const capture::Session& Reconstruction::session() const {
+  return impl_->session;
+}
+
+const core::Mesh& Reconstruction::mesh() const {
+  return impl_->mesh;
+}
+
+const ReconstructionOptions& Reconstruction::options() const {
+  return impl_->options;
+}
+
+const fitting::LightField& Reconstruction::light_field() const {
+  return impl_->fitter->light_field();
+}
+
+fitting::FitStatistics Reconstruction::fit_statistics() const {
+  return impl_->fitter->statistics();
+}
+
+const fitting::LightField* Reconstruction::mean_colours() const {
+  if (impl_->mean) return &impl_->mean->light_field();
+  return impl_->options.representation == kMean ? &light_field() : nullptr;
+}
+
+const FrameStatistics& Reconstruction::frames() const {
+  return impl_->stage->statistics();
+}
+
+const core::StageTimer& Reconstruction::times() const {
+  return impl_->times;
+}
+
+double Reconstruction::finish_cpu_ms() const {
+  return impl_->finish_cpu_ms;
+}
+
+const std::optional<capture::BoardRefinement>& Reconstruction::board_refinement() const {
+  return impl_->board;
+}
+
+PosedFrame Reconstruction::refined(const capture::Frame& frame, const PosedFrame& posed) {
+  return impl_->stage->refined(frame, posed);
+}
+
+SharedModel& Reconstruction::model() {
+  return *impl_->model;
+}
+
+fitting::UndoableFitter* Reconstruction::history() {
+  return impl_->history;
+}
+
+fitting::UndoableFitter* Reconstruction::mean_history() {
+  return impl_->mean_history;
+}
+
+Reconstruction reconstruct(ReconstructionInputs inputs, const ReconstructionOptions& options,
+                           ProgressSink& sink) {
+  Reconstruction reconstruction(std::move(inputs), options, sink);
+  reconstruction.run(sink);
+  return reconstruction;
+}
+
+}  // namespace sheen::pipeline

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/pose/board_refinement.h"
+#include "capture/session/session.h"
+#include "capture/source/frame_source.h"
+#include "core/diagnostics/stage_timer.h"
+#include "core/mesh/mesh.h"
+#include "fitting/fitter.h"
+#include "fitting/undo/undoable_fitter.h"
+#include "pipeline/fit_stage.h"
+#include "pipeline/frame_statistics.h"
+#include "pipeline/options.h"
+#include "pipeline/pose_stage.h"
+#include "pipeline/progress_sink.h"
+#include "pipeline/shared_model.h"
+
+#include <memory>
+#include <optional>
+
+namespace sheen::pipeline {
+
+/// What is reconstructed from.
+struct ReconstructionInputs {
+  capture::Session session;
+  /// Frames of the session; null: its own, as options.frames says.
+  std::unique_ptr<capture::FrameSource> frames = nullptr;
+  VisibilityFactory make_visibility = {};
+};
+
+/// Whoever watches frames being fitted, on the thread that fits.
+class FrameListener {
+ public:
+  virtual ~FrameListener() = default;
+  /// Before a view is integrated; false keeps it out.
+  virtual bool admit(const core::SampleBatch& /*batch*/) { return true; }
+  /// After every frame; what it throws ends the run.
+  virtual void on_frame(const TrackedFrame& /*tracked*/, const FrameStatistics& /*frames*/) {}
+};
+
+/// A light field from a session: frames are posed, observed and fitted. Made in two steps, so that
+/// somebody may look at the model while it grows.
+class Reconstruction {
+ public:
+  /// Opens all that may be wrong: mesh, poses, settings. Reads part of the recording where texel
+  /// patches or a refined board ask for it. Throws core::Error, or std::invalid_argument for
+  /// settings that the representation refuses.
+  Reconstruction(ReconstructionInputs inputs, const ReconstructionOptions& options,
+                 ProgressSink& sink);
+  ~Reconstruction();
+  Reconstruction(Reconstruction&& other) noexcept;
+  Reconstruction& operator=(Reconstruction&& other) noexcept;
+  Reconstruction(const Reconstruction&) = delete;
+  Reconstruction& operator=(const Reconstruction&) = delete;
+
+  /// Fits every frame and finishes the model. `listener` may be null. Throws core::Error
+  /// (bad_input) when nothing was posed or seen.
+  void run(ProgressSink& sink, FrameListener* listener = nullptr);
+
+  [[nodiscard]] const capture::Session& session() const;
+  /// The surface that the light field lies on: the session's mesh, subdivided for texel patches.
+  [[nodiscard]] const core::Mesh& mesh() const;
+  [[nodiscard]] const ReconstructionOptions& options() const;
+  [[nodiscard]] const fitting::LightField& light_field() const;
+  [[nodiscard]] fitting::FitStatistics fit_statistics() const;
+  /// Mean colours of the same samples; null unless options.with_mean or they are what is fitted.
+  [[nodiscard]] const fitting::LightField* mean_colours() const;
+  [[nodiscard]] const FrameStatistics& frames() const;
+  [[nodiscard]] const core::StageTimer& times() const;
+  [[nodiscard]] double finish_cpu_ms() const;  ///< CPU time of what the fit put off to the end
+  [[nodiscard]] const std::optional<capture::BoardRefinement>& board_refinement() const;
+
+  /// A held-out frame's pose refined against the finished model; with `refine_poses` only.
+  PosedFrame refined(const capture::Frame& frame, const PosedFrame& posed);
+
+  /// For whoever watches: the model between threads, and its views to be taken back (null without
+  /// options.undoable).
+  SharedModel& model();
+  fitting::UndoableFitter* history();
+  fitting::UndoableFitter* mean_history();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// All at once.
+Reconstruction reconstruct(ReconstructionInputs inputs, const ReconstructionOptions& options,
+                           ProgressSink& sink);
+
+}  // namespace sheen::pipeline

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/session_parts.h"
+
+#include "core/diagnostics/error.h"
+#include "core/mesh/bounds.h"
+#include "core/mesh/read_mesh.h"
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+namespace sheen::pipeline {
+namespace {
+
+constexpr double kFallbackFps = 30;
+constexpr float kLargestObject_m = 20.0f;
+constexpr float kSmallestObject_m = 0.001f;
+
+}  // namespace
+
+bool takes_poses_from_file(const capture::Session& session, PoseSource source) {
+  return source == PoseSource::file || (source == PoseSource::automatic && session.poses);
+}
+
+std::unique_ptr<capture::PoseEstimator> make_pose_estimator(const capture::Session& session,
+                                                            PoseSource source,
+                                                            const capture::PoseGate& gate,
+                                                            const capture::Board* board) {
+  const auto session_file = session.folder / "session.json";
+  if (takes_poses_from_file(session, source)) {
+    if (!session.poses) {
+      throw core::bad_input(session_file, "has no poses",
+                            "name a poses.txt under \"poses\" or take the poses from the tags");
+    }
+    return capture::make_recorded_pose_estimator(capture::read_trajectory(*session.poses),
+                                                 session.fps.value_or(kFallbackFps));
+  }
+  if (!session.board) {
+    throw core::bad_input(session_file, "has no board",
+                          "name a board.yaml under \"board\" or take the poses from a file");
+  }
+  return capture::make_tag_pose_estimator(
+      board != nullptr ? *board : capture::read_board(*session.board), session.camera, gate);
+}
+
+core::Mesh read_object_mesh(const std::filesystem::path& path) {
+  core::Mesh mesh = core::read_mesh(path);
+  const float size_m = core::bounds_of(mesh).diagonal().norm();
+  if (size_m > kLargestObject_m || size_m < kSmallestObject_m) {
+    throw core::bad_input(path,
+                          fmt::format("is {:.4g} m across, its unit must be the metre", size_m),
+                          size_m > kLargestObject_m ? "scale it, by 0.001 if it is in millimetres"
+                                                    : "scale it to its true size");
+  }
+  return mesh;
+}
+
+}  // namespace sheen::pipeline

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/pose/pose_estimator.h"
+#include "capture/session/session.h"
+#include "core/mesh/mesh.h"
+#include "pipeline/options.h"
+
+#include <memory>
+
+namespace sheen::pipeline {
+
+/// Whether `source` means the session's poses.txt and not its tags.
+bool takes_poses_from_file(const capture::Session& session, PoseSource source);
+
+/// Throws core::Error (bad_input) when the session lacks what `source` asks for. `board` replaces
+/// the session's own when it is not null.
+std::unique_ptr<capture::PoseEstimator> make_pose_estimator(const capture::Session& session,
+                                                            PoseSource source,
+                                                            const capture::PoseGate& gate,
+                                                            const capture::Board* board = nullptr);
+
+/// A mesh, checked to be of a size that a handheld camera can walk round: throws core::Error
+/// (bad_input) for meshes in millimetres and the like.
+core::Mesh read_object_mesh(const std::filesystem::path& path);
+
+}  // namespace sheen::pipeline

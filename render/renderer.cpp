@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#include "render/renderer.h"
+
+#include "core/diagnostics/error.h"
+#include "fitting/descriptor.h"
+#include "fitting/patch_light_field.h"
+#include "render/gl/offscreen_target.h"
+#include "render/surface/surface_renderer.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include <string>
+
+namespace sheen::render {
+
+void Renderer::draw(gl::OffscreenTarget& target, const core::CameraModel& camera,
+                    const Eigen::Isometry3d& camera_from_object) {
+  constexpr std::uint8_t unsupported = 128;
+  const RenderedView view = render(camera, camera_from_object);
+  cv::Mat alpha(view.mask.size(), CV_8UC1, cv::Scalar(0));
+  alpha.setTo(unsupported, view.mask);
+  alpha.setTo(255, view.support);
+  const std::array<cv::Mat, 2> planes{view.image, alpha};
+  cv::Mat rgba(view.image.size(), CV_8UC4);
+  cv::mixChannels(planes.data(), planes.size(), &rgba, 1,
+                  std::array<int, 8>{2, 0, 1, 1, 0, 2, 3, 3}.data(), 4);
+  target.replace(rgba);
+}
+
+std::unique_ptr<Renderer> make_renderer(Context& context, const core::Mesh& mesh,
+                                        const fitting::LightField& light_field, int threads) {
+  const auto& descriptor = fitting::representation_named(light_field.representation());
+  if (descriptor.make_renderer != nullptr) {
+    return descriptor.make_renderer(context, mesh, light_field, threads);
+  }
+  if (const auto* const patches = fitting::as_patches(light_field)) {
+    return make_gl_surface_renderer(context, mesh, *patches, threads);
+  }
+  throw core::Error(core::Error::Kind::run_failed,
+                    "representation " + std::string(light_field.representation()),
+                    "has no renderer in this program", "use the version of sheen that made it");
+}
+
+}  // namespace sheen::render
