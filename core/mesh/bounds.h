@@ -14,4 +14,15 @@ inline Eigen::AlignedBox3f bounds_of(const Mesh& mesh) {
   return box;
 }
 
+/// Lets a mesh be given with another offset: positions move by the difference, in double precision.
+inline void move_offset(Mesh& mesh, const Eigen::Vector3d& offset) {
+  const Eigen::Vector3d shift = mesh.offset - offset;
+  if (!shift.isZero(0)) {
+    for (Eigen::Vector3f& position : mesh.positions) {
+      position = (position.cast<double>() + shift).cast<float>();
+    }
+  }
+  mesh.offset = offset;
+}
+
 }  // namespace sheen::core

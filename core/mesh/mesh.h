@@ -16,6 +16,10 @@ struct Mesh {
   std::vector<Eigen::Vector3f> normals;
   std::vector<Eigen::Matrix<std::uint32_t, 3, 1>>
       triangles;  ///< counter-clockwise seen from outside
+  /// What was taken out of the file's coordinates before they were rounded to single precision:
+  /// file = position + offset. Zero unless the mesh lies far from its origin, as survey coordinates
+  /// do.
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
 };
 
 }  // namespace sheen::core

@@ -3,108 +3,23 @@
 
 #include "core/diagnostics/error.h"
 #include "core/files/write_file.h"
+#include "core/mesh/ply_body.h"
 #include "core/mesh/ply_header.h"
+#include "core/mesh/triangulate.h"
+#include "core/text/number.h"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
 #include <string>
 #include <string_view>
 
 namespace sheen::core {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "bytes are written as they lie");
-
-/// Reads one number after the other, whatever the format; none is read past the end.
-class PlyBody {
- public:
-  PlyBody(std::string_view bytes, PlyFormat format, const std::filesystem::path& path)
-      : rest_(bytes), format_(format), path_(path) {}
-
-  double next(PlyScalar type) {
-    if (format_ == PlyFormat::ascii) return next_word();
-    switch (type) {
-      case PlyScalar::int8:
-        return next_binary<std::int8_t>();
-      case PlyScalar::uint8:
-        return next_binary<std::uint8_t>();
-      case PlyScalar::int16:
-        return next_binary<std::int16_t>();
-      case PlyScalar::uint16:
-        return next_binary<std::uint16_t>();
-      case PlyScalar::int32:
-        return next_binary<std::int32_t>();
-      case PlyScalar::uint32:
-        return next_binary<std::uint32_t>();
-      case PlyScalar::float32:
-        return static_cast<double>(next_binary<float>());
-      case PlyScalar::float64:
-        return next_binary<double>();
-    }
-    throw broken("names a type that does not exist");
-  }
-
-  /// A list's length or a vertex index: an integer in [0, end).
-  std::size_t next_integer(PlyScalar type, std::size_t end, const std::string& fault) {
-    const double value = next(type);
-    if (!(value >= 0 && value < static_cast<double>(end)) || value != std::floor(value)) {
-      throw broken(fault);
-    }
-    return static_cast<std::size_t>(value);
-  }
-
-  /// Length of a list; every entry takes at least one byte.
-  std::size_t next_length(PlyScalar type) {
-    return next_integer(type, rest_.size() + 1,
-                        "is cut short or holds a list of impossible length");
-  }
-
- private:
-  template <typename T>
-  T next_binary() {
-    if (rest_.size() < sizeof(T)) throw broken("is cut short");
-    std::array<char, sizeof(T)> raw;
-    std::memcpy(raw.data(), rest_.data(), sizeof(T));
-    if (format_ == PlyFormat::big_endian) std::reverse(raw.begin(), raw.end());
-    rest_.remove_prefix(sizeof(T));
-    return std::bit_cast<T>(raw);
-  }
-
-  double next_word() {
-    constexpr std::string_view space = " \t\r\n";
-    const std::size_t begin = rest_.find_first_not_of(space);
-    if (begin == std::string_view::npos) throw broken("is cut short");
-    rest_.remove_prefix(begin + (rest_[begin] == '+' ? 1 : 0));
-    double value = 0;
-    const auto parsed = std::from_chars(rest_.data(), rest_.data() + rest_.size(), value);
-    if (parsed.ec != std::errc()) throw broken("holds a word that is not a number");
-    rest_.remove_prefix(static_cast<std::size_t>(parsed.ptr - rest_.data()));
-    if (!rest_.empty() && space.find(rest_.front()) == std::string_view::npos) {
-      throw broken("holds a word that is not a number");
-    }
-    return value;
-  }
-
-  [[nodiscard]] Error broken(const std::string& fault) const {
-    return bad_input(path_, fault, "write it again");
-  }
-
-  std::string_view rest_;
-  PlyFormat format_;
-  const std::filesystem::path& path_;
-};
-
-void skip_list(PlyBody& body, const PlyProperty& property) {
-  const std::size_t length = body.next_length(*property.count);
-  for (std::size_t i = 0; i < length; ++i) body.next(property.type);
-}
 
 /// Where a vertex property belongs: 0-2 position, 3-5 normal, 6 elsewhere.
 std::size_t slot_of(const PlyProperty& property) {
@@ -114,69 +29,146 @@ std::size_t slot_of(const PlyProperty& property) {
                                   names.begin());
 }
 
-void read_vertices(PlyBody& body, const PlyElement& element, Mesh& mesh) {
+bool has_property(const PlyElement& element, std::string_view name) {
+  return std::any_of(
+      element.properties.begin(), element.properties.end(),
+      [name](const PlyProperty& property) { return property.name == name && !property.count; });
+}
+
+/// The names of the properties, for a message.
+std::string list_of(const PlyElement& element) {
+  constexpr std::size_t most = 6;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, element.properties.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + quotable(element.properties[i].name, 20);
+  }
+  return text + (element.properties.size() > most ? ", ..." : "");
+}
+
+void check_coordinates(const PlyElement& element, const std::filesystem::path& path) {
+  for (const char* name : {"x", "y", "z"}) {
+    if (!has_property(element, name)) {
+      throw bad_input(
+          path,
+          std::string("its vertices have no ") + name + " (they have " + list_of(element) + ")",
+          "name the coordinates x, y and z");
+    }
+  }
+}
+
+void read_vertices(PlyBody& body, const PlyElement& element, MeshFile& mesh) {
   std::vector<std::size_t> slots;
   for (const PlyProperty& property : element.properties) slots.push_back(slot_of(property));
-  const bool has_normals = std::count(slots.begin(), slots.end(), 3U) +
-                               std::count(slots.begin(), slots.end(), 4U) +
-                               std::count(slots.begin(), slots.end(), 5U) ==
-                           3;
+  const bool has_normals =
+      has_property(element, "nx") && has_property(element, "ny") && has_property(element, "nz");
   mesh.positions.reserve(element.rows);
   for (std::size_t row = 0; row < element.rows; ++row) {
-    std::array<float, 7> values{};
+    std::array<double, 7> values{};
     for (std::size_t p = 0; p < slots.size(); ++p) {
-      if (element.properties[p].count) {
-        skip_list(body, element.properties[p]);
-      } else {
-        values[slots[p]] = static_cast<float>(body.next(element.properties[p].type));
+      const PlyProperty& property = element.properties[p];
+      if (property.count) {
+        body.skip_list(property);
+        continue;
       }
+      values[slots[p]] = body.next(property.type);
     }
     mesh.positions.emplace_back(values[0], values[1], values[2]);
-    if (has_normals) mesh.normals.emplace_back(values[3], values[4], values[5]);
-  }
-}
-
-/// One polygon as a fan around its first corner.
-void read_polygon(PlyBody& body, const PlyProperty& property, Mesh& mesh) {
-  const std::size_t corners = body.next_length(*property.count);
-  Eigen::Matrix<std::uint32_t, 3, 1> triangle(0, 0, 0);
-  for (std::size_t c = 0; c < corners; ++c) {
-    const auto corner = static_cast<std::uint32_t>(body.next_integer(
-        property.type, mesh.positions.size(), "has a face with a corner that does not exist"));
-    if (c == 0) triangle[0] = corner;
-    triangle[1] = triangle[2];
-    triangle[2] = corner;
-    if (c >= 2) mesh.triangles.push_back(triangle);
-  }
-}
-
-void read_faces(PlyBody& body, const PlyElement& element, Mesh& mesh) {
-  for (std::size_t row = 0; row < element.rows; ++row) {
-    for (const PlyProperty& property : element.properties) {
-      const bool is_polygon = property.name == "vertex_indices" || property.name == "vertex_index";
-      if (is_polygon && property.count) {
-        read_polygon(body, property, mesh);
-      } else if (property.count) {
-        skip_list(body, property);
-      } else {
-        body.next(property.type);
-      }
+    if (has_normals) {
+      mesh.normals.emplace_back(static_cast<float>(values[3]), static_cast<float>(values[4]),
+                                static_cast<float>(values[5]));
     }
   }
 }
 
-void skip_rows(PlyBody& body, const PlyElement& element) {
-  if (element.properties.empty()) return;
-  for (std::size_t row = 0; row < element.rows; ++row) {
-    for (const PlyProperty& property : element.properties) {
-      if (property.count) {
-        skip_list(body, property);
-      } else {
-        body.next(property.type);
+/// Faces, strips and what they share.
+class FaceReader {
+ public:
+  FaceReader(PlyBody& body, MeshFile& mesh, const std::filesystem::path& path)
+      : body_(body), mesh_(mesh), path_(path) {}
+
+  void read_faces(const PlyElement& element) {
+    if (element.rows > 0 &&
+        std::none_of(element.properties.begin(), element.properties.end(), names_corners)) {
+      throw bad_input(path_,
+                      "its faces have no list vertex_indices (they have " + list_of(element) + ")",
+                      "write the corners of faces under that name");
+    }
+    read_rows(element, [this](const PlyProperty& property) { read_polygon(property); });
+  }
+
+  void read_strips(const PlyElement& element) {
+    read_rows(element, [this](const PlyProperty& property) { read_strip(property); });
+  }
+
+  /// What is to be said at the end.
+  void add_notes() {
+    if (cutter_.crossing() == 0) return;
+    mesh_.notes.push_back(std::to_string(cutter_.crossing()) +
+                          " of its polygons cross themselves; their triangles may lie wrong");
+  }
+
+ private:
+  static bool names_corners(const PlyProperty& property) {
+    return property.count && (property.name == "vertex_indices" || property.name == "vertex_index");
+  }
+
+  template <typename Take>
+  void read_rows(const PlyElement& element, const Take& take) {
+    for (std::size_t row = 0; row < element.rows; ++row) {
+      for (const PlyProperty& property : element.properties) {
+        if (names_corners(property)) {
+          take(property);
+        } else if (property.count) {
+          body_.skip_list(property);
+        } else {
+          body_.next(property.type);
+        }
       }
     }
   }
-}
+
+  void read_polygon(const PlyProperty& property) {
+    corners_.clear();
+    const std::size_t count = body_.next_length(*property.count);
+    for (std::size_t c = 0; c < count; ++c) {
+      corners_.push_back(
+          static_cast<std::uint32_t>(body_.next_index(property.type, mesh_.positions.size())));
+    }
+    if (!cutter_.cut(corners_, mesh_.positions, mesh_.triangles)) {
+      throw bad_input(path_, "has concave polygons of too many corners", "triangulate it before");
+    }
+  }
+
+  /// Every corner after the second closes a triangle with the two before, every second one the
+  /// other way round; -1 begins a new strip.
+  void read_strip(const PlyProperty& property) {
+    const std::size_t count = body_.next_length(*property.count);
+    corners_.clear();
+    for (std::size_t c = 0; c < count; ++c) {
+      const double value = body_.next(property.type);
+      if (value == -1) {
+        corners_.clear();
+        continue;
+      }
+      if (!(value >= 0 && value < static_cast<double>(mesh_.positions.size())) ||
+          value != std::floor(value)) {
+        throw body_.broken("has a strip with a corner that does not exist");
+      }
+      corners_.push_back(static_cast<std::uint32_t>(value));
+      const std::size_t n = corners_.size();
+      if (n < 3) continue;
+      const bool is_turned = n % 2 == 0;
+      mesh_.triangles.emplace_back(corners_[n - 3], corners_[n - (is_turned ? 1 : 2)],
+                                   corners_[n - (is_turned ? 2 : 1)]);
+    }
+  }
+
+  PlyBody& body_;
+  MeshFile& mesh_;
+  const std::filesystem::path& path_;
+  Triangulator cutter_;
+  std::vector<std::uint32_t> corners_;
+};
 
 std::string all_bytes(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
@@ -204,20 +196,30 @@ std::string header_text(const Mesh& mesh) {
 
 }  // namespace
 
-Mesh read_ply(const std::filesystem::path& path) {
+MeshFile read_ply(const std::filesystem::path& path) {
   const std::string bytes = all_bytes(path);
   const PlyHeader header = parse_ply_header(bytes, path);
   PlyBody body(std::string_view(bytes).substr(header.size_bytes), header.format, path);
-  Mesh mesh;
+  MeshFile mesh;
+  FaceReader faces(body, mesh, path);
+  bool is_splats = false;
   for (const PlyElement& element : header.elements) {
+    if (element.properties.empty()) continue;
     if (element.name == "vertex" && mesh.positions.empty()) {
-      if (element.properties.empty()) throw bad_input(path, "has empty vertices", "write it again");
+      check_coordinates(element, path);
+      is_splats = has_property(element, "f_dc_0");
       read_vertices(body, element, mesh);
-    } else if (element.name == "face" && !element.properties.empty()) {
-      read_faces(body, element, mesh);
+    } else if (element.name == "face") {
+      faces.read_faces(element);
+    } else if (element.name == "tristrips") {
+      faces.read_strips(element);
     } else {
-      skip_rows(body, element);
+      for (std::size_t row = 0; row < element.rows; ++row) body.skip_row(element);
     }
+  }
+  faces.add_notes();
+  if (is_splats && mesh.triangles.empty()) {
+    throw bad_input(path, "is a cloud of Gaussian splats", "give a surface of triangles");
   }
   return mesh;
 }

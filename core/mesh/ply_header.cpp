@@ -86,14 +86,21 @@ PlyHeader parse_ply_header(std::string_view bytes, const std::filesystem::path& 
   const auto broken = [&path](const std::string& fault) {
     return bad_input(path, fault, "it may be cut short; write it again");
   };
-  if (!bytes.starts_with("ply\n") && !bytes.starts_with("ply\r\n")) {
+  // Lines end with \n, as the first one shows, or with \r alone.
+  const std::size_t mark = bytes.starts_with("\xef\xbb\xbf") ? 3 : 0;
+  const std::size_t first_end = bytes.find_first_of("\r\n", mark);
+  if (first_end == std::string_view::npos ||
+      words_of(bytes.substr(mark, first_end - mark)) != std::vector<std::string>{"ply"}) {
     throw broken("does not begin like a PLY file");
   }
+  const bool has_returns_only =
+      bytes[first_end] == '\r' && !bytes.substr(first_end).starts_with("\r\n");
+  const char line_end = has_returns_only ? '\r' : '\n';
   PlyHeader header;
   bool has_format = false;
-  std::size_t begin = bytes.find('\n') + 1;
+  std::size_t begin = bytes.find(line_end, mark) + 1;
   while (true) {
-    const std::size_t end = bytes.find('\n', begin);
+    const std::size_t end = bytes.find(line_end, begin);
     if (end == std::string_view::npos) throw broken("has a header without an end");
     const std::vector<std::string> words = words_of(bytes.substr(begin, end - begin));
     begin = end + 1;

@@ -2,29 +2,30 @@
 #include "core/mesh/read_mesh.h"
 
 #include "core/diagnostics/error.h"
-#include "core/mesh/glb_guard.h"
+#include "core/mesh/gltf_file.h"
+#include "core/mesh/obj_file.h"
 #include "core/mesh/ply_file.h"
 #include "core/mesh/repair.h"
+#include "core/mesh/winding.h"
 
-#include <assimp/Importer.hpp>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
+#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <span>
-#include <string>
-#include <vector>
+#include <cstdio>
+#include <utility>
 
 namespace sheen::core {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// More is no surface that a camera can tell apart; a small file may ask for it by instancing.
-constexpr std::size_t kMostVertices = 20'000'000;
-constexpr std::size_t kMostTriangles = 2 * kMostVertices;  // of a closed surface
+constexpr double kFarAway = 64;  // sizes of the mesh from its origin: rounding is 4e-6 of its size
+constexpr double kFarthest_m = 1e9;
+constexpr double kDoubtfulGrid = 1e-4,
+                 kUselessGrid = 0.02;  // steps of positions, of the mesh's size
+constexpr double kContradicting = 0.9, kFewContradicting = 0.1;  // shares of the normals
 
 std::string lower_extension(const fs::path& path) {
   std::string extension = path.extension().string();
@@ -48,131 +49,130 @@ void check_file(const fs::path& path) {
   }
 }
 
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-  return text;
+MeshFile read_file(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  if (extension == ".ply") return read_ply(path);
+  return extension == ".obj" ? read_obj(path) : read_glb(path);
 }
 
-/// Loads without any post-processing, which would merge and reorder vertices, and checks what
-/// later steps take on trust.
-const aiScene& load_scene(Assimp::Importer& importer, const fs::path& path) {
-  const aiScene* scene = importer.ReadFile(path.string(), 0);
-  if (scene == nullptr || scene->mRootNode == nullptr) {
-    throw bad_input(path, "cannot be read as a mesh (" + one_line(importer.GetErrorString()) + ")",
-                    "it may be cut short; write it again");
+[[noreturn]] void refuse_position(std::size_t vertex, const fs::path& path) {
+  throw bad_input(
+      path, "has a position that is not a finite number (vertex " + std::to_string(vertex) + ")",
+      "repair the mesh");
+}
+
+Eigen::AlignedBox3d bounds_of(const MeshFile& file) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3d& position : file.positions) box.extend(position);
+  return box;
+}
+
+/// What is taken out before rounding: nothing, or the middle in whole metres.
+Eigen::Vector3d offset_of(const Eigen::AlignedBox3d& box) {
+  const double farthest =
+      std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  if (!(farthest > kFarAway * box.diagonal().norm()) || farthest > kFarthest_m) {
+    return Eigen::Vector3d::Zero();
   }
-  bool has_polygons = false;
-  for (const aiMesh* mesh : std::span(scene->mMeshes, scene->mNumMeshes)) {
-    for (unsigned f = 0; f < mesh->mNumFaces; ++f) {
-      const aiFace& face = mesh->mFaces[f];
-      has_polygons |= face.mNumIndices > 3;
-      if (std::any_of(face.mIndices, face.mIndices + face.mNumIndices,
-                      [mesh](unsigned index) { return index >= mesh->mNumVertices; })) {
-        throw bad_input(path, "has a face with a corner that does not exist", "write it again");
-      }
+  return box.center().array().round();
+}
+
+/// Distance of neighbouring numbers of single precision at `value`.
+double single_step(double value) {
+  const float magnitude = std::abs(static_cast<float>(value));
+  return static_cast<double>(std::nextafter(magnitude, 2 * magnitude + 1)) -
+         static_cast<double>(magnitude);
+}
+
+/// Whether another program has rounded the positions to single precision already: all are such
+/// numbers, and not simply whole.
+bool is_rounded(const MeshFile& file) {
+  bool has_fraction = false;
+  for (const Eigen::Vector3d& position : file.positions) {
+    for (const double value : position) {
+      if (static_cast<double>(static_cast<float>(value)) != value) return false;
+      has_fraction |= value != std::floor(value);
     }
   }
-  if (has_polygons) scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
-  if (scene == nullptr) {
-    throw bad_input(path, "has polygons that cannot be cut into triangles",
-                    "triangulate it before");
-  }
-  return *scene;
+  return has_fraction;
 }
 
-Eigen::Vector3f vector_of(const aiVector3D& v) {
-  return {v.x, v.y, v.z};
+/// What single precision in the file itself has done to a mesh far from its origin.
+void judge_grid(const MeshFile& file, const Eigen::AlignedBox3d& box, const fs::path& path,
+                std::vector<std::string>& notes) {
+  const double farthest =
+      std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  const double step = single_step(farthest);
+  const double size = box.diagonal().norm();
+  if (!(step > kDoubtfulGrid * size) || !is_rounded(file)) return;
+  char fault[160];
+  std::snprintf(
+      fault, sizeof(fault),
+      "stores positions in single precision %.4g m from the origin, where they stand on a "
+      "grid of %.2g mm",
+      farthest, 1000 * step);
+  const char* const remedy = "export it in double precision or move it to the origin first";
+  if (step > kUselessGrid * size) throw bad_input(path, fault, remedy);
+  notes.push_back(std::string(fault) + "; " + remedy);
 }
 
-/// Appends one mesh of the scene. Normals stay empty until a mesh brings some.
-void append(const aiMesh& source, const aiMatrix4x4& object_from_mesh, Mesh& mesh) {
-  const auto base = static_cast<std::uint32_t>(mesh.positions.size());
-  const aiMatrix3x3 linear(object_from_mesh);
-  const bool mirrors = linear.Determinant() < 0;
-  for (unsigned i = 0; i < source.mNumVertices; ++i) {
-    mesh.positions.push_back(vector_of(object_from_mesh * source.mVertices[i]));
+Mesh rounded(MeshFile&& file, const fs::path& path, std::vector<std::string>& notes) {
+  for (std::size_t i = 0; i < file.positions.size(); ++i) {
+    if (!file.positions[i].allFinite()) refuse_position(i, path);
   }
-  if (source.mNormals != nullptr) {
-    // A matrix without inverse gives NaN here; such normals are computed anew later.
-    aiMatrix3x3 turn_normal = linear;
-    turn_normal.Inverse().Transpose();
-    mesh.normals.resize(base, Eigen::Vector3f::Zero());
-    for (unsigned i = 0; i < source.mNumVertices; ++i) {
-      mesh.normals.push_back(vector_of(turn_normal * source.mNormals[i]));
-    }
-  }
-  for (unsigned f = 0; f < source.mNumFaces; ++f) {
-    const aiFace& face = source.mFaces[f];
-    if (face.mNumIndices != 3) continue;  // points and lines have no surface
-    mesh.triangles.emplace_back(base + face.mIndices[0], base + face.mIndices[mirrors ? 2 : 1],
-                                base + face.mIndices[mirrors ? 1 : 2]);
-  }
-}
-
-/// All meshes of the scene in depth-first order of its nodes.
-Mesh flattened(const aiScene& scene, const fs::path& path) {
-  struct Visit {
-    const aiNode* node;
-    aiMatrix4x4 object_from_parent;
-  };
   Mesh mesh;
-  std::vector<Visit> open = {{scene.mRootNode, aiMatrix4x4()}};
-  while (!open.empty()) {
-    const Visit visit = open.back();
-    open.pop_back();
-    const aiMatrix4x4 object_from_node = visit.object_from_parent * visit.node->mTransformation;
-    for (unsigned m = 0; m < visit.node->mNumMeshes; ++m) {
-      const aiMesh& source = *scene.mMeshes[visit.node->mMeshes[m]];
-      if (mesh.positions.size() + source.mNumVertices > kMostVertices ||
-          mesh.triangles.size() + source.mNumFaces > kMostTriangles) {
-        throw bad_input(path, "has more than 20 million vertices or 40 million triangles",
-                        "simplify it");
-      }
-      append(source, object_from_node, mesh);
-    }
-    for (unsigned c = visit.node->mNumChildren; c > 0; --c) {
-      open.push_back({visit.node->mChildren[c - 1], object_from_node});
-    }
+  if (!file.positions.empty()) {
+    const Eigen::AlignedBox3d box = bounds_of(file);
+    mesh.offset = offset_of(box);
+    judge_grid(file, box, path, notes);
   }
-  if (!mesh.normals.empty()) mesh.normals.resize(mesh.positions.size(), Eigen::Vector3f::Zero());
+  mesh.positions.reserve(file.positions.size());
+  for (std::size_t i = 0; i < file.positions.size(); ++i) {
+    mesh.positions.push_back((file.positions[i] - mesh.offset).cast<float>());
+    if (!mesh.positions.back().allFinite()) refuse_position(i, path);
+  }
+  mesh.normals = std::move(file.normals);
+  mesh.triangles = std::move(file.triangles);
   return mesh;
 }
 
-void check_positions(const Mesh& mesh, const fs::path& path) {
-  const auto bad = std::find_if(mesh.positions.begin(), mesh.positions.end(),
-                                [](const Eigen::Vector3f& p) { return !p.allFinite(); });
-  if (bad != mesh.positions.end()) {
-    throw bad_input(path,
-                    "has a position that is not a finite number (vertex " +
-                        std::to_string(bad - mesh.positions.begin()) + ")",
-                    "repair the mesh");
+/// Normals that contradict the triangles: turned where the triangles are surely right.
+void judge_normals(Mesh& mesh, std::vector<std::string>& notes) {
+  const double against = normals_against_winding(mesh);
+  if (against >= kContradicting && is_closed(mesh)) {
+    for (Eigen::Vector3f& normal : mesh.normals) normal = -normal;
+    notes.emplace_back("its normals pointed inwards and were turned");
+  } else if (against > kFewContradicting && against < kContradicting) {
+    notes.push_back(std::to_string(std::lround(100 * against)) +
+                    " % of its normals contradict the winding of its triangles; write it again "
+                    "without normals to have them computed");
   }
-}
-
-Mesh read_by_assimp(const fs::path& path) {
-  Assimp::Importer importer;
-  return flattened(load_scene(importer, path), path);
 }
 
 }  // namespace
 
-Mesh read_mesh(const std::filesystem::path& path) {
+Mesh read_mesh(const std::filesystem::path& path, std::vector<std::string>* notes) {
   // Load.
   check_file(path);
-  const std::string extension = lower_extension(path);
-  if (extension == ".glb") check_glb(path);
-  Mesh mesh = extension == ".ply" ? read_ply(path) : read_by_assimp(path);
+  MeshFile file = read_file(path);
+  std::vector<std::string> said = std::move(file.notes);
+  Mesh mesh = rounded(std::move(file), path, said);
 
   // Repair, from the corners to the surface.
-  check_positions(mesh, path);
-  if (extension == ".obj") join_identical_vertices(mesh);
+  if (lower_extension(path) == ".obj") join_identical_vertices(mesh);
   drop_degenerate_triangles(mesh);
   if (mesh.triangles.empty()) {
     throw bad_input(path, "has no triangles", "give a surface, not a point cloud");
   }
+  if (const std::size_t turned = unify_winding(mesh); turned > 0) {
+    said.push_back(
+        std::to_string(turned) +
+        " of its triangles ran the other way round than their neighbours and were turned");
+  }
   turn_inside_out_surface(mesh);
+  judge_normals(mesh, said);
   complete_normals(mesh);
+  if (notes != nullptr) *notes = std::move(said);
   return mesh;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "core/mesh/repair.h"
 
+#include "core/mesh/parts.h"
+
 #include <Eigen/Geometry>
 
 #include <algorithm>
@@ -36,26 +38,6 @@ VertexKey key_of(const Eigen::Vector3f& position, const Eigen::Vector3f& normal)
   return key;
 }
 
-/// For every vertex the first one that has its position.
-std::vector<std::uint32_t> first_at_position(const Mesh& mesh) {
-  std::unordered_map<VertexKey, std::uint32_t, VertexKeyHash> known;
-  known.reserve(mesh.positions.size());
-  std::vector<std::uint32_t> first(mesh.positions.size());
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    const VertexKey key = key_of(mesh.positions[i], Eigen::Vector3f::Zero());
-    first[i] = known.try_emplace(key, static_cast<std::uint32_t>(i)).first->second;
-  }
-  return first;
-}
-
-/// Cross product of two edges: twice the area along the normal.
-Eigen::Vector3d doubled_area(const Mesh& mesh, const Triangle& triangle) {
-  const Eigen::Vector3d a = mesh.positions[triangle[0]].cast<double>();
-  const Eigen::Vector3d b = mesh.positions[triangle[1]].cast<double>();
-  const Eigen::Vector3d c = mesh.positions[triangle[2]].cast<double>();
-  return (b - a).cross(c - a);
-}
-
 /// Enclosed volume of a closed surface, m^3, by the divergence theorem.
 double signed_volume(const Mesh& mesh) {
   const Eigen::Vector3d origin = mesh.positions.front().cast<double>();
@@ -65,24 +47,6 @@ double signed_volume(const Mesh& mesh) {
     sixfold += corner.dot(doubled_area(mesh, triangle));
   }
   return sixfold / 6;
-}
-
-bool is_closed(const Mesh& mesh) {
-  const std::vector<std::uint32_t> first = first_at_position(mesh);
-  // Collect every directed edge and its mirror image, each as one number.
-  std::vector<std::uint64_t> edges;
-  std::vector<std::uint64_t> mirrored;
-  for (const Triangle& triangle : mesh.triangles) {
-    for (int corner = 0; corner < 3; ++corner) {
-      const std::uint64_t from = first[triangle[corner]];
-      const std::uint64_t to = first[triangle[(corner + 1) % 3]];
-      edges.push_back(from << 32 | to);
-      mirrored.push_back(to << 32 | from);
-    }
-  }
-  std::sort(edges.begin(), edges.end());
-  std::sort(mirrored.begin(), mirrored.end());
-  return edges == mirrored && std::adjacent_find(edges.begin(), edges.end()) == edges.end();
 }
 
 bool is_usable(const Eigen::Vector3f& normal) {
@@ -109,6 +73,24 @@ std::vector<Eigen::Vector3d> normal_sums(const Mesh& mesh) {
 }
 
 }  // namespace
+
+bool is_closed(const Mesh& mesh) {
+  const std::vector<std::uint32_t> first = first_at_position(mesh);
+  // Collect every directed edge and its mirror image, each as one number.
+  std::vector<std::uint64_t> edges;
+  std::vector<std::uint64_t> mirrored;
+  for (const Triangle& triangle : mesh.triangles) {
+    for (int corner = 0; corner < 3; ++corner) {
+      const std::uint64_t from = first[triangle[corner]];
+      const std::uint64_t to = first[triangle[(corner + 1) % 3]];
+      edges.push_back(from << 32 | to);
+      mirrored.push_back(to << 32 | from);
+    }
+  }
+  std::sort(edges.begin(), edges.end());
+  std::sort(mirrored.begin(), mirrored.end());
+  return edges == mirrored && std::adjacent_find(edges.begin(), edges.end()) == edges.end();
+}
 
 void join_identical_vertices(Mesh& mesh) {
   const bool has_normals = !mesh.normals.empty();

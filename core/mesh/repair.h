@@ -19,6 +19,9 @@ void drop_degenerate_triangles(Mesh& mesh);
 /// direction) whose enclosed volume is negative. Open surfaces stay as they are.
 void turn_inside_out_surface(Mesh& mesh);
 
+/// Whether every edge, by position, runs once in either direction.
+bool is_closed(const Mesh& mesh);
+
 /// Gives every normal unit length; those that are zero, not finite or missing (`normals` may be
 /// empty) become the sum of the normals of the triangles around, weighted by their angle at the
 /// vertex. Where that sum is zero a triangle's own normal serves, without triangles (0, 0, 1).

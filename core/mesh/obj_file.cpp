@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+#include "core/mesh/obj_file.h"
+
+#include "core/diagnostics/error.h"
+#include "core/mesh/triangulate.h"
+#include "core/text/number.h"
+#include "core/text/text_form.h"
+
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <string_view>
+#include <unordered_map>
+
+namespace sheen::core {
+namespace {
+
+constexpr std::string_view kBlanks = " \t";
+constexpr std::uint32_t kNoNormal = 0xffffffffU;
+
+std::string all_text(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  if (!file.is_open() || file.bad()) throw bad_input(path, "cannot be read", "check permissions");
+  normalise_text(text, path);
+  return text;
+}
+
+/// Takes the first word off `line`; empty at its end.
+std::string_view next_word(std::string_view& line) {
+  line.remove_prefix(std::min(line.find_first_not_of(kBlanks), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(kBlanks));
+  line.remove_prefix(word.size());
+  return word;
+}
+
+class ObjReader {
+ public:
+  explicit ObjReader(const std::filesystem::path& path) : path_(path) {}
+
+  MeshFile read() {
+    std::string text = all_text(path_);
+    join_continued_lines(text);
+    std::string_view rest = text;
+    while (!rest.empty()) {
+      const std::size_t end = std::min(rest.find('\n'), rest.size());
+      ++line_;
+      take(rest.substr(0, end));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    if (!has_normals_) mesh_.normals.clear();
+    if (cutter_.crossing() > 0) {
+      mesh_.notes.push_back(std::to_string(cutter_.crossing()) +
+                            " of its polygons cross themselves; their triangles may lie wrong");
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& fault) const {
+    throw bad_input(path_, "line " + std::to_string(line_) + " " + fault, "write it again");
+  }
+
+  /// A backslash at the end of a line joins the next one to it. Line numbers stay.
+  static void join_continued_lines(std::string& text) {
+    for (std::size_t i = text.find("\\\n"); i != std::string::npos; i = text.find("\\\n", i)) {
+      text[i] = ' ';
+      text[i + 1] = ' ';
+    }
+  }
+
+  void take(std::string_view line) {
+    const std::string_view keyword = next_word(line);
+    if (keyword == "v") {
+      positions_.push_back(read_triple(line));
+    } else if (keyword == "vn") {
+      normals_.push_back(read_triple(line).cast<float>());
+    } else if (keyword == "f" || keyword == "fo") {
+      read_face(line);
+    }
+    if (positions_.size() > 4 * kMostVertices) {
+      throw bad_input(path_, "has more than 80 million vertices", "simplify it");
+    }
+  }
+
+  Eigen::Vector3d read_triple(std::string_view line) {
+    Eigen::Vector3d triple;
+    for (double& number : triple) {
+      const std::string_view word = next_word(line);
+      const auto value = parse_number(word);
+      if (!value) fail("holds something that is not a number (" + why_no_number(word) + ")");
+      number = *value;
+    }
+    return triple;
+  }
+
+  /// An index as written, to one from 0; 0 and what lies outside do not exist.
+  [[nodiscard]] std::uint32_t index_of(std::string_view word, std::size_t count) const {
+    const auto written = parse_whole_number(word);
+    const auto size = static_cast<long long>(count);
+    if (!written || *written == 0 || *written > size || *written < -size) {
+      fail("has a face with a corner that does not exist (" + quotable(word) + ")");
+    }
+    return static_cast<std::uint32_t>(*written > 0 ? *written - 1 : size + *written);
+  }
+
+  /// position, position/texture, position//normal or position/texture/normal
+  [[nodiscard]] std::uint32_t corner_of(std::string_view word) {
+    const std::size_t slash = word.find('/');
+    const std::uint32_t position = index_of(word.substr(0, slash), positions_.size());
+    std::uint32_t normal = kNoNormal;
+    const std::size_t second = slash == std::string_view::npos ? slash : word.find('/', slash + 1);
+    if (second != std::string_view::npos && second + 1 < word.size()) {
+      normal = index_of(word.substr(second + 1), normals_.size());
+    }
+    return vertex_of(position, normal);
+  }
+
+  std::uint32_t vertex_of(std::uint32_t position, std::uint32_t normal) {
+    const std::uint64_t pair = std::uint64_t{position} << 32U | normal;
+    const auto next = static_cast<std::uint32_t>(mesh_.positions.size());
+    const auto [entry, is_new] = vertices_.try_emplace(pair, next);
+    if (!is_new) return entry->second;
+    if (mesh_.positions.size() >= kMostVertices) {
+      throw bad_input(path_, "has more than 20 million vertices", "simplify it");
+    }
+    has_normals_ |= normal != kNoNormal;
+    mesh_.positions.push_back(positions_[position]);
+    mesh_.normals.push_back(normal == kNoNormal ? Eigen::Vector3f(Eigen::Vector3f::Zero())
+                                                : normals_[normal]);
+    return next;
+  }
+
+  void read_face(std::string_view line) {
+    corners_.clear();
+    for (auto word = next_word(line); !word.empty(); word = next_word(line)) {
+      if (word.front() == '#') break;
+      corners_.push_back(corner_of(word));
+    }
+    if (!cutter_.cut(corners_, mesh_.positions, mesh_.triangles)) {
+      throw bad_input(path_, "has concave polygons of too many corners", "triangulate it before");
+    }
+    if (mesh_.triangles.size() > kMostTriangles) {
+      throw bad_input(path_, "has more than 40 million triangles", "simplify it");
+    }
+  }
+
+  const std::filesystem::path& path_;
+  std::size_t line_ = 0;
+  std::vector<Eigen::Vector3d> positions_;  ///< all `v` so far
+  std::vector<Eigen::Vector3f> normals_;    ///< all `vn` so far
+  MeshFile mesh_;
+  bool has_normals_ = false;
+  std::unordered_map<std::uint64_t, std::uint32_t> vertices_;  ///< pair of indices -> vertex
+  std::vector<std::uint32_t> corners_;
+  Triangulator cutter_;
+};
+
+}  // namespace
+
+MeshFile read_obj(const std::filesystem::path& path) {
+  return ObjReader(path).read();
+}
+
+}  // namespace sheen::core
