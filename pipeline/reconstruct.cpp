@@ -10,6 +10,7 @@
 #include "pipeline/observation_replay.h"
 #include "pipeline/patch_mesh.h"
 #include "pipeline/session_board.h"
+#include "pipeline/session_mesh.h"
 #include "pipeline/session_parts.h"
 
 #include <fmt/format.h>
@@ -46,7 +47,9 @@ std::unique_ptr<core::Visibility> make_visibility(const VisibilityFactory& facto
 struct Reconstruction::Impl {
   Impl(ReconstructionInputs inputs, const ReconstructionOptions& wanted, ProgressSink& sink);
 
-  core::Mesh read_mesh() const;
+  core::Mesh read_mesh(ProgressSink& sink);
+  core::Mesh patch_mesh();
+  void look_at_sides(const TrackedFrame& tracked, ProgressSink& sink);
   std::unique_ptr<capture::PoseEstimator> pose_estimator() const;
   std::unique_ptr<fitting::Fitter> make_fitter(const std::string& name,
                                                const fitting::OptionValues& values,
@@ -56,8 +59,12 @@ struct Reconstruction::Impl {
 
   ReconstructionOptions options;
   capture::Session session;
+  bool is_live = false;
   std::optional<capture::BoardRefinement> board;
+  core::Mesh object_mesh;
+  SessionScene scene;
   core::Mesh mesh;
+  std::vector<Eigen::Isometry3d> first_poses;  ///< of a live recording: which side do they see
   std::unique_ptr<ViewObserver> observer;
   VisibilityFactory visibility;
   std::unique_ptr<fitting::Fitter> fitter;
@@ -78,8 +85,11 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
                            ProgressSink& sink)
     : options(wanted),
       session(std::move(inputs.session)),
+      is_live(inputs.is_live),
       board(refine_board(session, options, sink)),
-      mesh(read_mesh()),
+      object_mesh(read_mesh(sink)),
+      scene(session, object_mesh, options.frames.pose_source, sink),
+      mesh(patch_mesh()),
       observer(std::make_unique<ViewObserver>(
           mesh, make_visibility(inputs.make_visibility, mesh, options.threads), options.limits,
           options.threads)),
@@ -114,13 +124,36 @@ std::unique_ptr<capture::PoseEstimator> Reconstruction::Impl::pose_estimator() c
                              board ? &board->board : nullptr);
 }
 
+/// The session's mesh, its outside towards the cameras.
+core::Mesh Reconstruction::Impl::read_mesh(ProgressSink& sink) {
+  core::Mesh read = read_session_mesh(session, sink);
+  if (!is_live && needs_cameras(read)) {
+    face_cameras(read, session, probe_poses(session, options.frames), sink);
+  }
+  return read;
+}
+
 /// Refined to the images' resolution when patches are texels.
-core::Mesh Reconstruction::Impl::read_mesh() const {
-  core::Mesh read = read_object_mesh(session.mesh);
-  if (options.patches == Patches::vertex) return read;
-  const auto footprint_m = pixel_footprint_m(session, read, *pose_estimator());
-  if (!footprint_m) return read;  // the run itself will say why no frame is posed
-  return texel_mesh(read, *footprint_m, options.texel_px);
+core::Mesh Reconstruction::Impl::patch_mesh() {
+  if (options.patches == Patches::vertex) return object_mesh;
+  const auto footprint_m = pixel_footprint_m(session, object_mesh, *pose_estimator());
+  if (!footprint_m) return object_mesh;  // the run itself will say why no frame is posed
+  return texel_mesh(object_mesh, *footprint_m, options.texel_px);
+}
+
+/// While a recording is made its mesh is fitted already; that it is inside out can be said only.
+void Reconstruction::Impl::look_at_sides(const TrackedFrame& tracked, ProgressSink& sink) {
+  constexpr std::size_t enough = 20;
+  const auto* pose = std::get_if<capture::FramePose>(&tracked.pose);
+  if (!is_live || pose == nullptr || first_poses.size() >= enough) return;
+  first_poses.push_back(pose->camera_from_board);
+  if (first_poses.size() < enough || !needs_cameras(object_mesh)) return;
+  core::Mesh copy = object_mesh;
+  face_cameras(copy, session, first_poses, sink);
+  if (copy.triangles != object_mesh.triangles || copy.normals != object_mesh.normals) {
+    sink.note(session.mesh.string() +
+              ": what is fitted now shows its inside; sheen replay of this session turns it");
+  }
 }
 
 std::unique_ptr<fitting::Fitter> Reconstruction::Impl::make_fitter(
@@ -177,11 +210,16 @@ void Reconstruction::run(ProgressSink& sink, FrameListener* listener) {
   const FrameStatistics& frames = impl_->stage->statistics();
   impl_->times =
       for_each_frame(*impl_->poses, impl_->options.threads > 1, [&](TrackedFrame& tracked) {
+        if (const auto* pose = std::get_if<capture::FramePose>(&tracked.pose)) {
+          impl_->scene.see(pose->camera_from_board);
+        }
+        impl_->look_at_sides(tracked, sink);
         impl_->stage->integrate(tracked);
         sink.progress({"fitting", frames.frames_read, impl_->frame_count.value_or(0),
                        fmt::format("{} posed", frames.posed.size())});
         if (listener != nullptr) listener->on_frame(tracked, frames);
       });
+  if (!frames.posed.empty()) impl_->scene.finish(sink);
   check_something_was_seen(impl_->session, frames, impl_->fitter->statistics().samples);
   impl_->finish();
 }
@@ -192,6 +230,10 @@ const capture::Session& Reconstruction::session() const {
 
 const core::Mesh& Reconstruction::mesh() const {
   return impl_->mesh;
+}
+
+const core::Mesh& Reconstruction::object_mesh() const {
+  return impl_->object_mesh;
 }
 
 const ReconstructionOptions& Reconstruction::options() const {

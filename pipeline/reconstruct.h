@@ -26,6 +26,8 @@ struct ReconstructionInputs {
   /// Frames of the session; null: its own, as options.frames says.
   std::unique_ptr<capture::FrameSource> frames = nullptr;
   VisibilityFactory make_visibility = {};
+  /// The recording is being made: it cannot be looked at before its frames come.
+  bool is_live = false;
 };
 
 /// Whoever watches frames being fitted, on the thread that fits.
@@ -60,6 +62,8 @@ class Reconstruction {
   [[nodiscard]] const capture::Session& session() const;
   /// The surface that the light field lies on: the session's mesh, subdivided for texel patches.
   [[nodiscard]] const core::Mesh& mesh() const;
+  /// The session's mesh as it is seen, before any subdivision.
+  [[nodiscard]] const core::Mesh& object_mesh() const;
   [[nodiscard]] const ReconstructionOptions& options() const;
   [[nodiscard]] const fitting::LightField& light_field() const;
   [[nodiscard]] fitting::FitStatistics fit_statistics() const;

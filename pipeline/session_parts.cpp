@@ -2,18 +2,11 @@
 #include "pipeline/session_parts.h"
 
 #include "core/diagnostics/error.h"
-#include "core/mesh/bounds.h"
-#include "core/mesh/read_mesh.h"
-
-#include <Eigen/Geometry>
-#include <fmt/format.h>
 
 namespace sheen::pipeline {
 namespace {
 
 constexpr double kFallbackFps = 30;
-constexpr float kLargestObject_m = 20.0f;
-constexpr float kSmallestObject_m = 0.001f;
 
 }  // namespace
 
@@ -40,18 +33,6 @@ std::unique_ptr<capture::PoseEstimator> make_pose_estimator(const capture::Sessi
   }
   return capture::make_tag_pose_estimator(
       board != nullptr ? *board : capture::read_board(*session.board), session.camera, gate);
-}
-
-core::Mesh read_object_mesh(const std::filesystem::path& path) {
-  core::Mesh mesh = core::read_mesh(path);
-  const float size_m = core::bounds_of(mesh).diagonal().norm();
-  if (size_m > kLargestObject_m || size_m < kSmallestObject_m) {
-    throw core::bad_input(path,
-                          fmt::format("is {:.4g} m across, its unit must be the metre", size_m),
-                          size_m > kLargestObject_m ? "scale it, by 0.001 if it is in millimetres"
-                                                    : "scale it to its true size");
-  }
-  return mesh;
 }
 
 }  // namespace sheen::pipeline

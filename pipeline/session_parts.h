@@ -3,7 +3,6 @@
 
 #include "capture/pose/pose_estimator.h"
 #include "capture/session/session.h"
-#include "core/mesh/mesh.h"
 #include "pipeline/options.h"
 
 #include <memory>
@@ -19,9 +18,5 @@ std::unique_ptr<capture::PoseEstimator> make_pose_estimator(const capture::Sessi
                                                             PoseSource source,
                                                             const capture::PoseGate& gate,
                                                             const capture::Board* board = nullptr);
-
-/// A mesh, checked to be of a size that a handheld camera can walk round: throws core::Error
-/// (bad_input) for meshes in millimetres and the like.
-core::Mesh read_object_mesh(const std::filesystem::path& path);
 
 }  // namespace sheen::pipeline

@@ -5,11 +5,10 @@
 #include "app/commands/replay.h"
 #include "app/interrupt.h"
 #include "app/preview/window.h"
-#include "capture/pose/board.h"
 #include "capture/session/camera_recording.h"
 #include "capture/session/session.h"
 #include "core/diagnostics/error.h"
-#include "pipeline/session_parts.h"
+#include "pipeline/session_mesh.h"
 
 #include <fmt/format.h>
 
@@ -55,8 +54,15 @@ void check_size(const capture::CameraDescription& camera, const core::CameraMode
 /// the next one would have to go elsewhere.
 void check_before_recording(const CaptureOptions& options, const capture::SessionSetup& setup,
                             const CommandContext& context) {
-  static_cast<void>(capture::read_board(setup.board));
-  static_cast<void>(pipeline::read_object_mesh(setup.mesh));
+  capture::Session scene;
+  scene.folder = options.session;
+  scene.camera = setup.camera;
+  scene.board = setup.board;
+  scene.mesh = setup.mesh;
+  scene.board_from_object = setup.board_from_object;
+  pipeline::ProgressSink silent;  // the fit says the same again
+  const core::Mesh mesh = pipeline::read_session_mesh(scene, silent);
+  static_cast<void>(pipeline::SessionScene(scene, mesh, pipeline::PoseSource::tags, silent));
   context.check_outputs({options.fit.output});
   if (options.fit.preview) Window::check_display();
 }

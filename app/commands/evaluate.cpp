@@ -5,11 +5,12 @@
 #include "app/terminal_sink.h"
 #include "core/diagnostics/error.h"
 #include "core/image/write_image.h"
+#include "core/mesh/bounds.h"
 #include "evaluation/views/contact_sheet.h"
 #include "evaluation/views/evaluate_views.h"
 #include "fitting/model_file/model_file.h"
 #include "pipeline/pose_frames.h"
-#include "pipeline/session_parts.h"
+#include "pipeline/session_mesh.h"
 #include "render/renderer.h"
 
 #include <fmt/format.h>
@@ -50,15 +51,29 @@ std::string to_text(const std::vector<std::string>& names,
   return text;
 }
 
+std::vector<Eigen::Isometry3d> poses_of(const std::vector<pipeline::PosedFrame>& views) {
+  std::vector<Eigen::Isometry3d> poses;
+  for (const pipeline::PosedFrame& view : views) poses.push_back(view.camera_from_board);
+  return poses;
+}
+
 void run_evaluate(const EvaluateOptions& options, const CommandContext& context) {
   // Read the models and pose the views.
   context.check_outputs({options.sheet});
   std::vector<fitting::Model> models;
   models.push_back(fitting::read_model(options.model));
   if (!options.beside.empty()) models.push_back(fitting::read_model(options.beside));
-  const capture::Session session = capture::open_session(options.session);
+  capture::Session session = capture::open_session(options.session);
   TerminalSink sink(context);
+  core::Mesh mesh = pipeline::read_session_mesh(session, sink);
   const auto views = pipeline::pose_frames(session, options.frames, sink);
+  pipeline::SessionScene::check(session, mesh, options.frames.pose_source, views, sink);
+  pipeline::face_cameras(mesh, session, poses_of(views), sink);
+
+  // Bring everything into the coordinates of the first model.
+  for (fitting::Model& model : models) core::move_offset(model.mesh, models.front().mesh.offset);
+  core::move_offset(mesh, models.front().mesh.offset);
+  session.take_offset(mesh.offset);
 
   // Draw and compare.
   const auto gl = render::make_osmesa_context();
@@ -72,7 +87,6 @@ void run_evaluate(const EvaluateOptions& options, const CommandContext& context)
   }
   evaluation::ContactSheet sheet(names);
   int done = 0;
-  const core::Mesh mesh = pipeline::read_object_mesh(session.mesh);
   const int count = static_cast<int>(views.size());
   const auto summaries = evaluation::evaluate_views(*gl, {session, mesh, views}, renderers,
                                                     [&](const evaluation::ComparedView& view) {

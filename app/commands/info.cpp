@@ -4,7 +4,7 @@
 #include "core/mesh/bounds.h"
 #include "fitting/model_file/model_file.h"
 #include "fitting/patch_light_field.h"
-#include "pipeline/session_parts.h"
+#include "pipeline/session_mesh.h"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

@@ -16,7 +16,7 @@
 #include "core/image/write_image.h"
 #include "core/mesh/bounds.h"
 #include "pipeline/pose_frames.h"
-#include "pipeline/session_parts.h"
+#include "pipeline/session_mesh.h"
 
 #include <fmt/format.h>
 
@@ -45,18 +45,6 @@ struct Views {
   std::vector<capture::RegistrationView> views;
   std::vector<int> frame_indices;
 };
-
-std::vector<capture::ChosenView> choose_frames(const capture::Session& session,
-                                               const RegisterOptions& options,
-                                               const Eigen::Vector3d& centre,
-                                               const CommandContext& context) {
-  TerminalSink sink(context);
-  std::vector<capture::PosedFrameIndex> posed;
-  for (const pipeline::PosedFrame& frame : pipeline::pose_frames(session, options.frames, sink)) {
-    posed.push_back({frame.index, frame.camera_from_board});
-  }
-  return capture::choose_views(posed, session.camera, centre, options.views);
-}
 
 Views read_views(const capture::Session& session, const RegisterOptions& options,
                  const std::vector<capture::ChosenView>& chosen) {
@@ -124,10 +112,31 @@ Eigen::Isometry3d first_guess(const RegisterOptions& options, const capture::Ses
     const auto placement =
         capture::place_by_pairs(capture::read_point_pairs(options.pairs), options.pairs);
     context.note(fmt::format("note: the pairs fit each other to {:.1f} mm", 1e3 * placement.rms_m));
-    return placement.board_from_object;
+    return placement.board_from_object * Eigen::Translation3d(mesh.offset);
   }
   if (options.guess == "upright") return capture::place_upright(mesh, 0);
   return session.board_from_object;
+}
+
+/// Poses the recording and chooses the frames to look at. Throws core::Error (bad_input) for a
+/// scene that cannot be: nothing is registered in the wrong unit.
+std::vector<capture::ChosenView> choose_frames(capture::Session session,
+                                               const RegisterOptions& options, core::Mesh& mesh,
+                                               const Eigen::Isometry3d& guess,
+                                               const CommandContext& context) {
+  TerminalSink sink(context);
+  session.board_from_object = guess;
+  const auto frames = pipeline::pose_frames(session, options.frames, sink);
+  pipeline::SessionScene::check(session, mesh, options.frames.pose_source, frames, sink);
+  std::vector<capture::PosedFrameIndex> posed;
+  std::vector<Eigen::Isometry3d> poses;
+  for (const pipeline::PosedFrame& frame : frames) {
+    posed.push_back({frame.index, frame.camera_from_board});
+    poses.push_back(frame.camera_from_board);
+  }
+  pipeline::face_cameras(mesh, session, poses, sink);
+  return capture::choose_views(
+      posed, session.camera, guess * core::bounds_of(mesh).center().cast<double>(), options.views);
 }
 
 /// Writes session.json with the new place; the one it replaces is kept. Returns the lines that say
@@ -147,20 +156,20 @@ void run_register(const RegisterOptions& options, const CommandContext& context)
   const auto session_file = options.session / "session.json";
   const auto output = options.output.empty() ? session_file : options.output;
   context.check_outputs({output, options.image});
-  const capture::Session session = capture::open_session(options.session);
+  capture::Session session = capture::open_session(options.session);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
-  const core::Mesh mesh = pipeline::read_object_mesh(session.mesh);
+  TerminalSink sink(context);
+  core::Mesh mesh = pipeline::read_session_mesh(session, sink);
 
   // Guess, then align.
   Eigen::Isometry3d guess = first_guess(options, session, mesh, context);
-  const auto chosen = choose_frames(session, options,
-                                    guess * core::bounds_of(mesh).center().cast<double>(), context);
+  const auto chosen = choose_frames(session, options, mesh, guess, context);
   const Views views = read_views(session, options, chosen);
   if (options.pairs.empty() && options.guess == "upright") {
     guess = capture::find_upright_turn(mesh, session.camera, views.views, throw_if_interrupted);
   }
-  const auto found = capture::register_object(mesh, session.camera, views.views, guess,
-                                              {.search_m = options.search_mm / 1000});
+  auto found = capture::register_object(mesh, session.camera, views.views, guess,
+                                        {.search_m = options.search_mm / 1000});
   if (!found) {
     throw core::bad_input(options.session, "the object's outline finds too few edges",
                           "give a better start by --pairs or a larger --search-mm");
@@ -168,6 +177,7 @@ void run_register(const RegisterOptions& options, const CommandContext& context)
 
   // Save.
   if (!options.image.empty()) write_image(options, session, mesh, views, guess, *found);
+  found->board_from_object = found->board_from_object * Eigen::Translation3d(-mesh.offset);
   const std::string lines = save(session_file, output, found->board_from_object);
   if (found->matched_share < kTrustedShare) {
     context.note(

@@ -7,6 +7,7 @@
 #include "fitting/model_file/model_file.h"
 #include "pipeline/pose_frames.h"
 #include "pipeline/posed_views.h"
+#include "pipeline/session_mesh.h"
 #include "render/renderer.h"
 
 #include <fmt/format.h>
@@ -24,9 +25,11 @@ struct RenderOptions {
 void run_render(const RenderOptions& options, const CommandContext& context) {
   context.check_outputs({});
   const fitting::Model model = fitting::read_model(options.model);
-  const capture::Session session = capture::open_session(options.session);
+  capture::Session session = capture::open_session(options.session);
+  session.take_offset(model.mesh.offset);
   TerminalSink sink(context);
   const auto views = pipeline::pose_frames(session, options.frames, sink);
+  pipeline::SessionScene::check(session, model.mesh, options.frames.pose_source, views, sink);
   const auto gl = render::make_osmesa_context();
   const auto renderer = render::make_renderer(*gl, model.mesh, *model.light_field, context.threads);
   int done = 0;

@@ -13,7 +13,6 @@
 #include "fitting/patch_light_field.h"
 #include "pipeline/posed_views.h"
 #include "pipeline/reconstruct.h"
-#include "pipeline/session_parts.h"
 #include "render/renderer.h"
 #include "render/visibility/depth_visibility.h"
 
@@ -103,7 +102,7 @@ ReplayReport describe(const ReplayOptions& options, const Reconstruction& fitted
 std::vector<EvaluationSummary> evaluate_held_out(const Reconstruction& fitted,
                                                  const std::vector<PosedFrame>& held_out,
                                                  const CommandContext& context) {
-  const core::Mesh mesh = pipeline::read_object_mesh(fitted.session().mesh);
+  const core::Mesh& mesh = fitted.object_mesh();
   const auto gl = render::make_osmesa_context();
   const auto renderer =
       render::make_renderer(*gl, fitted.mesh(), fitted.light_field(), context.threads);
@@ -194,7 +193,8 @@ FitOutcome fit_session(const ReplayOptions& options, const capture::Session& ses
   TerminalSink sink(context);
   Reconstruction fitted({.session = session,
                          .frames = std::move(frames),
-                         .make_visibility = visibility_factory(options.visibility)},
+                         .make_visibility = visibility_factory(options.visibility),
+                         .is_live = camera != nullptr},
                         completed(options, context), sink);
   const auto live = make_live_session(options, fitted, camera != nullptr);
   FitOutcome outcome;

@@ -8,6 +8,7 @@
 #include "core/diagnostics/error.h"
 #include "core/image/write_image.h"
 #include "pipeline/session_board.h"
+#include "pipeline/session_mesh.h"
 
 #include <fmt/format.h>
 
@@ -111,11 +112,13 @@ std::string write_keeping(const std::filesystem::path& path, const Write& write)
 void run_survey(SurveyOptions options, const CommandContext& context) {
   if (options.output.empty()) options.output = options.session / "board.surveyed.yaml";
   context.check_outputs({options.output, options.camera_output, options.image});
-  const capture::Session session = capture::open_session(options.session);
+  capture::Session session = capture::open_session(options.session);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
   const auto lens =
       options.camera_output.empty() ? capture::LensRefinement::off : capture::LensRefinement::on;
   TerminalSink sink(context);
+  const core::Mesh mesh = pipeline::read_session_mesh(session, sink);
+  const pipeline::SessionScene scene(session, mesh, pipeline::PoseSource::tags, sink);
   const auto found =
       pipeline::refine_session_board(session, options.start, options.end, sink, lens);
   if (!found) {

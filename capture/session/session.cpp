@@ -169,7 +169,8 @@ Eigen::Isometry3d read_transform(const SessionReader& reader, const json& object
     reader.fail("\"T_stage_object\" " + fault,
                 "a rotation and a translation are allowed; scale the mesh itself to metres");
   }
-  if (T.topRightCorner<3, 1>().cwiseAbs().maxCoeff() > 1e6) {
+  // Meshes in survey coordinates lie a thousand kilometres from their origin.
+  if (T.topRightCorner<3, 1>().cwiseAbs().maxCoeff() > 1e8) {
     reader.fail("\"T_stage_object\" moves the object out of reach", "use metres");
   }
   // Replace the rounded rotation of the file by the nearest exact one.
@@ -198,6 +199,12 @@ std::unique_ptr<FrameSource> open_images(const Session& session, const FrameRang
 }
 
 }  // namespace
+
+void Session::take_offset(const Eigen::Vector3d& offset) {
+  if (offset == mesh_offset) return;
+  board_from_object = board_from_object * Eigen::Translation3d(offset - mesh_offset);
+  mesh_offset = offset;
+}
 
 Session open_session(const std::filesystem::path& folder) {
   std::error_code no_throw;

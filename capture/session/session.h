@@ -27,8 +27,13 @@ struct Session {
   std::optional<std::filesystem::path> board;  ///< board.yaml
   std::optional<std::filesystem::path> poses;  ///< poses.txt; wins over the board
   std::filesystem::path mesh;
+  /// Places the mesh, less `mesh_offset`, on the board; as read, the mesh as its file has it.
   Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d mesh_offset = Eigen::Vector3d::Zero();
   std::vector<std::string> warnings;  ///< unknown keys, one line each
+
+  /// Lets `board_from_object` place a mesh that lacks `offset` (core::Mesh::offset).
+  void take_offset(const Eigen::Vector3d& offset);
 
   /// The camera that took a frame.
   [[nodiscard]] const core::CameraModel& camera_of(int /*frame_index*/) const { return camera; }

@@ -8,6 +8,7 @@
 #include "pipeline/hold_out.h"
 #include "pipeline/observation_replay.h"
 #include "pipeline/pose_frames.h"
+#include "pipeline/session_mesh.h"
 #include "pipeline/session_parts.h"
 
 #include <utility>
@@ -30,11 +31,13 @@ void observe_frames(const pipeline::FrameChoice& choice, int threads, pipeline::
   pipeline::ViewObserver observer = make_observer(observations.mesh, threads);
   pipeline::FrameStatistics frames;
   std::size_t samples = 0;
+  pipeline::SessionScene scene(session, observations.mesh, choice.pose_source, sink);
   pipeline::for_each_frame(poses, threads > 1, [&](pipeline::TrackedFrame& tracked) {
     const auto posed = frames.count(tracked);
     sink.progress({"observing", frames.frames_read});
     if (!posed) return;
     frames.posed.push_back(*posed);
+    scene.see(posed->camera_from_board);
     if (hold_out.contains(posed->index)) {
       observations.held_out.push_back(*posed);
       return;
@@ -46,6 +49,7 @@ void observe_frames(const pipeline::FrameChoice& choice, int threads, pipeline::
     observations.samples.push_back(observation.samples);
     samples += observation.samples.size();
   });
+  scene.finish(sink);
   pipeline::check_something_was_seen(session, frames, samples);
 }
 
@@ -64,13 +68,16 @@ Observations observe_session(const std::filesystem::path& folder,
                              pipeline::ProgressSink& sink) {
   Observations observations;
   observations.session = capture::open_session(folder);
-  observations.mesh = pipeline::read_object_mesh(observations.session.mesh);
+  observations.mesh = pipeline::read_session_mesh(observations.session, sink);
+  pipeline::face_cameras(observations.mesh, observations.session,
+                         pipeline::probe_poses(observations.session, choice), sink);
   const auto own_views = folder / "held_out";
   observations.has_own_held_out = std::filesystem::exists(own_views / "session.json");
   observe_frames(choice, threads, sink, observations);
   observations.held_out_session = observations.session;
   if (observations.has_own_held_out) {
     observations.held_out_session = capture::open_session(own_views);
+    observations.held_out_session.take_offset(observations.mesh.offset);
     observations.held_out = pipeline::pose_frames(observations.held_out_session, {}, sink);
   }
   check_views_are_held_out(observations);

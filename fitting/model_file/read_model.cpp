@@ -116,6 +116,19 @@ void check_conventions(const json& extension) {
   }
 }
 
+Eigen::Vector3d read_offset(const json& extension) {
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+  if (!extension.is_object() || !extension.contains("offset")) return offset;
+  const json& numbers = extension["offset"];
+  if (!numbers.is_array() || numbers.size() != 3) throw ModelFault("its \"offset\" is no position");
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const json& number = numbers[static_cast<std::size_t>(axis)];
+    offset[axis] = number.is_number() ? number.get<double>() : std::nan("");
+    if (!std::isfinite(offset[axis])) throw ModelFault("its \"offset\" is no position");
+  }
+  return offset;
+}
+
 ModelPart read_part(const Glb& glb, const json& extension) {
   ModelPart part;
   part.parameters = required(extension, "parameters");
@@ -151,6 +164,7 @@ Model parse_model(std::string file) {
     throw ModelFault("its checksum does not fit: the file was altered");
   Model model;
   model.mesh = read_mesh_part(glb);
+  model.mesh.offset = read_offset(extensions[kExtension]);
   model.light_field = read_light_field(glb, model.mesh);
   return model;
 }

@@ -85,6 +85,15 @@ void add_scene(json& document) {
   document["extensionsUsed"] = {"KHR_materials_unlit", kExtension};
 }
 
+/// Where the mesh's own coordinates lie, for a mesh far from its origin: the scene is where the
+/// user's data are.
+void add_offset(const Eigen::Vector3d& offset, json& document) {
+  if (offset.isZero(0)) return;
+  const json numbers = {offset.x(), offset.y(), offset.z()};
+  document["nodes"][0]["translation"] = numbers;
+  document["extensions"][kExtension]["offset"] = numbers;
+}
+
 void add_light_field(const LightField& light_field, DocumentBuilder& builder) {
   const ModelPart part = representation_named(light_field.representation()).encode(light_field);
   json arrays = json::object();
@@ -113,6 +122,7 @@ void write_model(const std::filesystem::path& path, const core::Mesh& mesh,
   add_scene(builder.document);
   add_mesh(mesh, light_field, builder);
   add_light_field(light_field, builder);
+  add_offset(mesh.offset, builder.document);
   builder.document["buffers"] = {{{"byteLength", builder.binary.size()}}};
   std::optional<std::string> bytes = glb_bytes(builder.document, builder.binary);
   if (!bytes) {
