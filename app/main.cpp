@@ -54,8 +54,6 @@ int main(int argc, char** argv) {
   app::add_view_command(program, context);
 
   app::watch_for_interrupts();
-  // FFmpeg reports damaged images on stderr by itself; ours is the one line that counts.
-  setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
   try {
     program.run(argc, argv);
     return kDone;

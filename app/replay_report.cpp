@@ -80,6 +80,9 @@ std::string frames_text(const pipeline::FrameStatistics& frames) {
   std::string text = fmt::format(
       "frames   {} read, {} posed, {} rejected, {} fitted, {} held out\n", frames.frames_read,
       frames.posed.size(), rejected(frames), frames.frames_fitted, frames.held_out.size());
+  if (frames.damaged > 0) {
+    text += fmt::format("         {} more were damaged and left out\n", frames.damaged);
+  }
   for (const auto& [reason, count] : frames.pose_rejections) {
     text += fmt::format("         {} refused: {}\n", count, reason);
   }
@@ -122,6 +125,7 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
             {"posed", frames.posed.size()},
             {"rejected", rejected(frames)},
             {"fitted", frames.frames_fitted},
+            {"damaged", frames.damaged},
             {"held_out", frames.held_out.size()}}},
           {"stage_ms", stages},
           {"frame_ms", to_json(report.timer.frame_wall())},

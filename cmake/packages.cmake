@@ -2,6 +2,7 @@
 find_package(Threads REQUIRED)
 find_package(Eigen3 REQUIRED NO_MODULE)
 find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs calib3d videoio aruco)
+find_package(ZLIB REQUIRED)
 find_package(embree 3 REQUIRED)
 find_package(apriltag REQUIRED)
 find_package(Ceres REQUIRED)

@@ -1,29 +1,133 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/check_seen.h"
 
+#include "capture/pose/board_diagnosis.h"
+#include "capture/pose/stamp_check.h"
 #include "core/diagnostics/error.h"
+#include "pipeline/session_parts.h"
 
 #include <fmt/format.h>
 
-namespace sheen::pipeline {
+#include <algorithm>
+#include <array>
 
-void check_something_was_seen(const capture::Session& session, const FrameStatistics& frames,
-                              std::size_t samples) {
-  if (frames.posed.empty()) {
-    std::string reasons;
-    for (const auto& [reason, count] : frames.pose_rejections) {
-      reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
-    }
-    throw core::bad_input(
-        session.folder,
-        fmt::format("none of {} frames got a pose ({})", frames.frames_read, reasons),
-        "check that board.yaml describes the printed board and that the board is "
-        "in view and sharp");
+namespace sheen::pipeline {
+namespace {
+
+constexpr int kDiagnosedFrames = 8;
+constexpr int kReadFrames = 240;
+
+std::string reasons_text(const FrameStatistics& frames) {
+  std::string reasons;
+  for (const auto& [reason, count] : frames.pose_rejections) {
+    reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
+  }
+  return reasons;
+}
+
+capture::PoseRejection most_frequent(const FrameStatistics& frames) {
+  using capture::PoseRejection;
+  constexpr std::array all{PoseRejection::no_tags, PoseRejection::too_few_tags,
+                           PoseRejection::reprojection, PoseRejection::blur};
+  return *std::max_element(all.begin(), all.end(), [&](PoseRejection a, PoseRejection b) {
+    const auto count = [&](PoseRejection rejection) {
+      const auto found = frames.pose_rejections.find(std::string(name_of(rejection)));
+      return found == frames.pose_rejections.end() ? 0 : found->second;
+    };
+    return count(a) < count(b);
+  });
+}
+
+[[noreturn]] void refuse_by_stamps(const capture::Session& session, const FrameStatistics& frames) {
+  const auto stamps = capture::unmatched_stamps(capture::read_trajectory(*session.poses),
+                                                {.count = frames.frames_read,
+                                                 .first_index = frames.first_index,
+                                                 .last_index = frames.last_index,
+                                                 .first_s = frames.first_s,
+                                                 .last_s = frames.last_s});
+  throw core::bad_input(
+      *session.poses,
+      fmt::format("gives none of {} frames a pose: {}", frames.frames_read, stamps.fault),
+      stamps.remedy);
+}
+
+[[noreturn]] void refuse_by_tags(const capture::Session& session, const FrameChoice& choice,
+                                 const FrameStatistics& frames) {
+  capture::BoardDiagnosis diagnosis(capture::read_board(*session.board), session.camera);
+  const auto source = capture::open_frames(session, choice.start, choice.end);
+  const int stride = std::max(1, std::min(frames.frames_read, kReadFrames) / kDiagnosedFrames);
+  for (int i = 0; i < kReadFrames; ++i) {
+    const auto frame = source->next();
+    if (!frame) break;
+    if (i % stride == 0) diagnosis.look_at(*frame);
+  }
+  const capture::PoseCause cause = diagnosis.cause(most_frequent(frames));
+  const auto camera = session.camera_file.value_or(session.folder / "camera.yaml");
+  const auto& subject = cause.suspect == capture::PoseSuspect::board    ? *session.board
+                        : cause.suspect == capture::PoseSuspect::camera ? camera
+                                                                        : session.folder;
+  throw core::bad_input(subject,
+                        fmt::format("{}; none of {} frames got a pose ({})", cause.fault,
+                                    frames.frames_read, reasons_text(frames)),
+                        cause.remedy);
+}
+
+/// Why the vertices of the mesh gave no sample, by the reason that most of them have.
+core::Error unseen(const capture::Session& session, const FrameStatistics& frames) {
+  const auto most = static_cast<core::VertexRejection>(
+      std::max_element(frames.vertex_rejections.begin() + 1, frames.vertex_rejections.end()) -
+      frames.vertex_rejections.begin());
+  const std::string fault = "is not seen in any posed frame: ";
+  switch (most) {
+    case core::VertexRejection::back_facing:
+    case core::VertexRejection::grazing:
+      return core::bad_input(session.mesh, fault + "it shows the cameras its back",
+                             "turn its triangles and normals, or check T_stage_object");
+    case core::VertexRejection::occluded:
+      return core::bad_input(session.mesh, fault + "all of it is hidden by itself",
+                             "check that the surface is not within another");
+    default:
+      return core::bad_input(session.mesh, fault + "it lies outside of the images",
+                             "check T_stage_object and that mesh and board are in metres");
+  }
+}
+
+}  // namespace
+
+void check_something_was_posed(const capture::Session& session, const FrameChoice& choice,
+                               const FrameStatistics& frames) {
+  if (!frames.posed.empty()) return;
+  if (frames.frames_read == 0) {
+    throw core::bad_input(session.folder, "holds no frame that can be read",
+                          "check the recording, all of its images are damaged");
+  }
+  if (takes_poses_from_file(session, choice.pose_source) && session.poses) {
+    refuse_by_stamps(session, frames);
+  }
+  refuse_by_tags(session, choice, frames);
+}
+
+void check_something_was_seen(const capture::Session& session, const FrameChoice& choice,
+                              const FrameStatistics& frames, std::size_t samples) {
+  check_something_was_posed(session, choice, frames);
+  if (samples == 0 && frames.frames_fitted + frames.frames_refused > 0) {
+    throw unseen(session, frames);
   }
   if (samples == 0) {
     throw core::bad_input(session.mesh, "is not seen in any posed frame",
                           "check T_stage_object and that mesh and board are in metres");
   }
+}
+
+void check_stamps(const capture::Session& session, const FrameChoice& choice,
+                  std::optional<int> frame_count) {
+  if (!takes_poses_from_file(session, choice.pose_source) || !session.poses || !frame_count ||
+      choice.start != 0 || choice.end) {
+    return;
+  }
+  const auto fault =
+      capture::shifted_stamps(capture::read_trajectory(*session.poses), *frame_count);
+  if (fault) throw core::bad_input(*session.poses, fault->fault, fault->remedy);
 }
 
 }  // namespace sheen::pipeline

@@ -45,6 +45,9 @@ class FitStage {
   /// Takes a frame into the model unless it has no pose or is held out.
   void integrate(TrackedFrame& tracked);
 
+  /// Counts what the recording left out.
+  void note_damaged(int frames) { statistics_.damaged = frames; }
+
   /// A frame's pose refined against the light field as it is now, or as it was when that cannot be
   /// said. Only with `refine_poses`; changes no statistics.
   PosedFrame refined(const capture::Frame& frame, PosedFrame posed);

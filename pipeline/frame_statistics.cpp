@@ -6,7 +6,12 @@
 namespace sheen::pipeline {
 
 std::optional<PosedFrame> FrameStatistics::count(const TrackedFrame& tracked) {
-  ++frames_read;
+  if (frames_read++ == 0) {
+    first_index = tracked.frame.index;
+    first_s = tracked.frame.time_s;
+  }
+  last_index = tracked.frame.index;
+  last_s = tracked.frame.time_s;
   if (const auto* rejection = std::get_if<capture::PoseRejection>(&tracked.pose)) {
     ++pose_rejections[std::string(name_of(*rejection))];
     return std::nullopt;

@@ -26,6 +26,9 @@ struct TrackedFrame;
 /// Everything that is counted while frames arrive.
 struct FrameStatistics {
   int frames_read = 0;
+  int damaged = 0;  ///< frames that came damaged and were left out; not among those read
+  int first_index = 0, last_index = 0;  ///< of the frames read
+  double first_s = 0, last_s = 0;       ///< their times
   int frames_fitted = 0;
   int frames_refused = 0;                      ///< posed, but not admitted to the model
   std::vector<PosedFrame> posed;               ///< in recorded order, held-out ones included

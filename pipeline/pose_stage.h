@@ -5,6 +5,7 @@
 #include "capture/source/frame_source.h"
 #include "core/diagnostics/stage_timer.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -23,8 +24,15 @@ class PoseStage {
   PoseStage(std::unique_ptr<capture::FrameSource> frames,
             std::unique_ptr<capture::PoseEstimator> poses);
 
-  /// The next frame; nothing at the end of the recording.
-  std::optional<TrackedFrame> next();
+  /// The next frame; nothing at the end of the recording. Frames that `is_wanted` (may be empty)
+  /// does not want are passed over without a pose.
+  std::optional<TrackedFrame> next(
+      const std::function<bool(const capture::Frame&)>& is_wanted = {});
+
+  [[nodiscard]] std::optional<int> frame_count() const { return frames_->frame_count(); }
+
+  /// What there is to say about the recording, after its last frame.
+  [[nodiscard]] capture::SourceReport report() const { return frames_->report(); }
 
  private:
   std::unique_ptr<capture::FrameSource> frames_;

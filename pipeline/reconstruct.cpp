@@ -107,6 +107,7 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
                     ? std::move(inputs.frames)
                     : capture::open_frames(session, options.frames.start, options.frames.end);
   frame_count = frames->frame_count();
+  if (!is_live) check_stamps(session, options.frames, frame_count);
   poses.emplace(std::move(frames), pose_estimator());
   stage.emplace(FitStage::Parts{
       .session = session,
@@ -219,8 +220,12 @@ void Reconstruction::run(ProgressSink& sink, FrameListener* listener) {
                        fmt::format("{} posed", frames.posed.size())});
         if (listener != nullptr) listener->on_frame(tracked, frames);
       });
+  const capture::SourceReport recording = impl_->poses->report();
+  impl_->stage->note_damaged(recording.damaged);
+  for (const std::string& note : recording.notes) sink.note(note);
   if (!frames.posed.empty()) impl_->scene.finish(sink);
-  check_something_was_seen(impl_->session, frames, impl_->fitter->statistics().samples);
+  check_something_was_seen(impl_->session, impl_->options.frames, frames,
+                           impl_->fitter->statistics().samples);
   impl_->finish();
 }
 

@@ -106,6 +106,12 @@ Candidates find_candidates(const CalibrateOptions& options, capture::TargetFinde
     candidates.thin_out();
     stride *= 2;
   }
+  const capture::SourceReport report = frames->report();
+  for (const std::string& note : report.notes) context.note("note: " + note);
+  if (report.damaged > 0) {
+    context.note(fmt::format("note: {}: {} damaged images were left out", options.source.string(),
+                             report.damaged));
+  }
   return candidates;
 }
 

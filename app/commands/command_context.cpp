@@ -11,6 +11,8 @@
 
 namespace sheen::app {
 void CommandContext::note(const std::string& line) const {
+  const std::scoped_lock lock(notes->mutex);
+  notes->lines.push_back(line);
   if (!quiet) std::fprintf(stderr, "%s\n", line.c_str());
 }
 
@@ -23,11 +25,17 @@ void CommandContext::check_outputs(const std::vector<std::filesystem::path>& out
 
 void CommandContext::publish(const nlohmann::ordered_json& document,
                              const std::string& text) const {
+  const std::scoped_lock lock(notes->mutex);
+  nlohmann::ordered_json complete = document;
+  if (complete.is_object() && !notes->lines.empty()) complete["notes"] = notes->lines;
   // Paths may hold bytes that are no UTF-8; they must not cost the whole report.
   const std::string json_text =
-      document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+      complete.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
   if (!report_path.empty()) core::write_file(report_path, json_text + "\n");
-  const std::string& answer = json ? json_text : text;
+  std::string answer = json ? json_text : text;
+  if (!json && quiet) {
+    for (const std::string& line : notes->lines) answer += line + "\n";
+  }
   std::fputs(answer.c_str(), stdout);
   if (!answer.empty() && answer.back() != '\n') std::fputc('\n', stdout);
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {

@@ -7,12 +7,21 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
 #include <vector>
 
 namespace sheen::app {
 
 /// What every subcommand is told and how it answers: results on stdout, the rest on stderr.
 struct CommandContext {
+  /// Lines told so far.
+  struct Notes {
+    std::mutex mutex;
+    std::vector<std::string> lines;
+  };
+  std::shared_ptr<Notes> notes = std::make_shared<Notes>();
   int threads = 1;
   bool quiet = false;
   bool json = false;
@@ -23,7 +32,8 @@ struct CommandContext {
     return {std::move(what), total, quiet};
   }
 
-  /// One line on stderr, unless --quiet.
+  /// One line on stderr, unless --quiet; it also stands in the report, so that doubts do not get
+  /// lost. From any thread.
   void note(const std::string& line) const;
 
   /// Throws core::Error (bad_input) when the report or one of `outputs` (empty paths: not asked
@@ -31,6 +41,7 @@ struct CommandContext {
   void check_outputs(const std::vector<std::filesystem::path>& outputs) const;
 
   /// Ends a command: `document` to --report and, with --json, to stdout; else `text` to stdout.
+  /// Notes go with the document, and with the text where --quiet kept them from stderr.
   void publish(const nlohmann::ordered_json& document, const std::string& text) const;
 };
 

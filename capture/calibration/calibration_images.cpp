@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "capture/calibration/calibration_images.h"
 
-#include "capture/source/image_check.h"
+#include "capture/source/image_facts.h"
+#include "capture/source/still_reader.h"
 #include "capture/source/video_source.h"
 #include "core/diagnostics/error.h"
-
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/videoio.hpp>
 
 #include <algorithm>
 #include <array>
@@ -23,7 +21,6 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 6> kImageEndings{".jpg", ".jpeg", ".png",
                                                         ".bmp", ".tif",  ".tiff"};
 constexpr std::array<std::string_view, 3> kRecordings{"frames.avi", "frames.mkv", "frames.mp4"};
-constexpr int kMaxSidePx = 1 << 15;
 
 bool is_image(const fs::path& path) {
   std::string ending = path.extension().string();
@@ -31,14 +28,28 @@ bool is_image(const fs::path& path) {
   return std::find(kImageEndings.begin(), kImageEndings.end(), ending) != kImageEndings.end();
 }
 
+bool is_hidden(const fs::path& path) {
+  return path.filename().string().starts_with('.');
+}
+
 /// Whatever images a folder holds, by name; the size of the first binds the others.
 class ImageFolder : public FrameSource {
  public:
   explicit ImageFolder(const fs::path& folder) {
-    for (const auto& entry : fs::directory_iterator(folder)) {
-      if (entry.is_regular_file() && is_image(entry.path())) files_.push_back(entry.path());
+    std::optional<UnreadableKind> other;
+    std::error_code fault;
+    for (fs::directory_iterator entry(folder, fault), last; !fault && entry != last;
+         entry.increment(fault)) {
+      // Macs leave ._IMG_0001.JPG beside IMG_0001.JPG; hidden files are nobody's photographs.
+      if (!entry->is_regular_file(fault) || is_hidden(entry->path())) continue;
+      if (is_image(entry->path())) files_.push_back(entry->path());
+      if (!other) other = unreadable_ending(entry->path());
     }
     std::sort(files_.begin(), files_.end());
+    if (files_.empty() && other) {
+      throw core::bad_input(
+          folder, "holds pictures of " + other->name + " only, which are not read", other->remedy);
+    }
     if (files_.empty()) {
       throw core::bad_input(folder, "holds no images", "name a folder of .jpg or .png files");
     }
@@ -47,17 +58,7 @@ class ImageFolder : public FrameSource {
   std::optional<Frame> next() override {
     if (next_ == files_.size()) return std::nullopt;
     Frame frame;
-    try {
-      frame.image = cv::imread(files_[next_].string(), cv::IMREAD_COLOR);
-    } catch (const cv::Exception&) {
-      frame.image.release();  // more pixels than OpenCV reads
-    }
-    if (frame.image.empty()) {
-      throw core::bad_input(files_[next_], "cannot be read as an image", "remove or replace it");
-    }
-    const ImageSize size{frame.image.cols, frame.image.rows};
-    if (next_ == 0) size_ = size;
-    check_image_size(files_[next_], size, size_);
+    frame.image = reader_.read(files_[next_], std::nullopt);
     frame.index = static_cast<int>(next_++);
     frame.time_s = frame.index;
     return frame;
@@ -67,25 +68,16 @@ class ImageFolder : public FrameSource {
     return static_cast<int>(files_.size());
   }
 
+  [[nodiscard]] SourceReport report() const override { return {0, reader_.notes()}; }
+
  private:
   std::vector<fs::path> files_;
   std::size_t next_ = 0;
-  ImageSize size_;
+  StillReader reader_;
 };
 
 std::unique_ptr<FrameSource> open_whole_video(const fs::path& path) {
-  ImageSize size;
-  {
-    cv::VideoCapture video(path.string(), cv::CAP_FFMPEG);
-    size.width_px = static_cast<int>(video.get(cv::CAP_PROP_FRAME_WIDTH));
-    size.height_px = static_cast<int>(video.get(cv::CAP_PROP_FRAME_HEIGHT));
-    if (!video.isOpened() || size.width_px < 1 || size.height_px < 1 ||
-        size.width_px > kMaxSidePx || size.height_px > kMaxSidePx) {
-      throw core::bad_input(path, "cannot be decoded as a video",
-                            "name a video file or a folder of images");
-    }
-  }
-  return open_video(path, size, {}, std::nullopt);
+  return open_video(path, stored_video_size(path), {}, std::nullopt);
 }
 
 }  // namespace

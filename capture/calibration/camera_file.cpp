@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "capture/calibration/camera_file.h"
 
+#include "capture/calibration/camera_document.h"
 #include "capture/files/text_file.h"
 #include "core/diagnostics/error.h"
 #include "core/files/staged_output.h"
+#include "core/text/number.h"
 
 #include <opencv2/core.hpp>
 #include <opencv2/core/persistence.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
-#include <exception>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,107 +21,232 @@
 namespace sheen::capture {
 namespace {
 
-// OpenCV's parser recurses without a limit; a short text with few brackets cannot exhaust the
-// stack.
-constexpr std::size_t kMaxBytes = 16 * 1024;
-constexpr auto kMaxBrackets = 64;
-constexpr int kMaxSidePx = 1 << 15;
-constexpr const char* kRemedy = "see docs/session-format.md for camera.yaml";
+constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
+constexpr double kInvisible_px = 0.05;  // terms that move nothing by more may be left out
+constexpr const char* kRemedy = "see docs/input.md for the camera files that are read";
 
-class CameraReader {
+/// Keys of one file, with errors that name it.
+class KeyReader {
  public:
-  explicit CameraReader(const std::filesystem::path& path) : path_(path) {
-    const std::string text = read_text_file(path, kMaxBytes);
-    const auto brackets =
-        std::count_if(text.begin(), text.end(), [](char c) { return c == '[' || c == '{'; });
-    if (brackets > kMaxBrackets) fail("is nested too deeply for a camera file");
-    if (!storage_.open(text, cv::FileStorage::READ | cv::FileStorage::MEMORY)) {
-      fail("is not in OpenCV's FileStorage form");
-    }
+  KeyReader(const CameraKeys& keys, const std::filesystem::path& path) : keys_(keys), path_(path) {}
+
+  [[noreturn]] void fail(const std::string& fault, const std::string& remedy = kRemedy) const {
+    throw core::bad_input(path_, fault, remedy);
   }
 
-  [[noreturn]] void fail(const std::string& fault) const {
-    throw core::bad_input(path_, fault, kRemedy);
+  /// The words under the first of these names that is there; null where none is.
+  [[nodiscard]] const std::vector<std::string>* find(
+      std::initializer_list<const char*> names) const {
+    for (const char* name : names) {
+      const auto found = keys_.find(name);
+      if (found != keys_.end()) return &found->second;
+    }
+    return nullptr;
+  }
+  [[nodiscard]] bool has(const char* name) const { return keys_.contains(name); }
+
+  [[nodiscard]] std::string text(std::initializer_list<const char*> names) const {
+    const auto* words = find(names);
+    std::string text = words != nullptr && !words->empty() ? words->front() : std::string();
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
   }
 
-  [[nodiscard]] int side(const char* key) const {
-    const cv::FileNode node = storage_[key];
-    if (!node.isInt()) fail(std::string(key) + " is missing or no whole number");
-    const int value = node;
-    if (value < 1 || value > kMaxSidePx) fail(std::string(key) + " is out of range");
-    return value;
+  [[nodiscard]] double number(const std::string& name, const std::string& word) const {
+    std::string lower = word;
+    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (lower.ends_with(".nan") || lower.ends_with(".inf"))
+      fail(name + " holds a number not finite");
+    const auto value = core::parse_number(word);
+    if (!value) fail(name + " holds something not a number (" + core::why_no_number(word) + ")");
+    if (!std::isfinite(*value)) fail(name + " holds a number not finite");
+    return *value;
   }
 
-  /// Row-major entries of a matrix. Read number by number: OpenCV's own reader allocates what the
-  /// header of the matrix claims before it looks at the data.
-  [[nodiscard]] std::vector<double> matrix(const char* key, std::size_t max_entries) const {
-    const cv::FileNode data = storage_[key]["data"];
-    if (!data.isSeq() || data.size() > max_entries) {
-      fail(std::string(key) + " is missing or no matrix of the expected size");
-    }
-    std::vector<double> entries;
-    for (const cv::FileNode entry : data) {
-      if (!entry.isInt() && !entry.isReal())
-        fail(std::string(key) + " holds something not a number");
-      entries.push_back(static_cast<double>(entry));
-      if (!std::isfinite(entries.back())) fail(std::string(key) + " holds a number not finite");
-    }
-    return entries;
+  [[nodiscard]] std::vector<double> numbers(const std::string& name,
+                                            const std::vector<std::string>& words) const {
+    std::vector<double> values;
+    for (const std::string& word : words) values.push_back(number(name, word));
+    return values;
+  }
+
+  /// One number; `fallback` where the key is missing.
+  [[nodiscard]] double number_of(const char* name, double fallback) const {
+    const auto* words = find({name});
+    return words == nullptr || words->empty() ? fallback : number(name, words->front());
+  }
+
+  [[nodiscard]] int side(const char* shown, std::initializer_list<const char*> names,
+                         std::size_t place = 0) const {
+    const auto* words = find(names);
+    const auto whole =
+        words != nullptr && place < words->size() ? whole_number((*words)[place]) : std::nullopt;
+    if (!whole) fail(std::string(shown) + " is missing or no whole number");
+    return static_cast<int>(std::clamp(*whole, -1LL, 1LL << 20));
   }
 
  private:
-  std::filesystem::path path_;
-  cv::FileStorage storage_;
+  /// Also 640.0, as JSON of other programs has it.
+  static std::optional<long long> whole_number(const std::string& word) {
+    const auto value = core::parse_number(word);
+    if (!value || *value != std::floor(*value) || std::abs(*value) > 1e9) return std::nullopt;
+    return static_cast<long long>(*value);
+  }
+
+  const CameraKeys& keys_;
+  const std::filesystem::path& path_;
 };
 
-void read_camera_matrix(const CameraReader& reader, core::CameraModel::Intrinsics& intrinsics) {
-  const std::vector<double> K = reader.matrix("camera_matrix", 9);
+void read_size(const KeyReader& reader, LensRecord& record) {
+  // Kalibr and Python's dumps write both sides in one list, width first.
+  if (reader.find({"resolution", "image_size", "imageSize"}) != nullptr &&
+      reader.find({"image_width", "image_Width", "width", "w"}) == nullptr) {
+    record.width_px = reader.side("resolution", {"resolution", "image_size", "imageSize"}, 0);
+    record.height_px = reader.side("resolution", {"resolution", "image_size", "imageSize"}, 1);
+    return;
+  }
+  record.width_px = reader.side("image_width", {"image_width", "image_Width", "width", "w"});
+  record.height_px = reader.side("image_height", {"image_height", "image_Height", "height", "h"});
+}
+
+void read_camera_matrix(const KeyReader& reader, LensRecord& record) {
+  const auto* words = reader.find(
+      {"camera_matrix", "Camera_Matrix", "cameraMatrix", "CameraMatrix", "K", "k", "mtx"});
+  if (words == nullptr) reader.fail("camera_matrix is missing or no matrix of the expected size");
+  const std::vector<double> K = reader.numbers("camera_matrix", *words);
   if (K.size() != 9) reader.fail("camera_matrix is not 3 x 3");
   if (K[3] != 0 || K[6] != 0 || K[7] != 0 || K[8] != 1 || std::abs(K[1]) > 1e-9 * std::abs(K[0])) {
     reader.fail("camera_matrix is not of the form fx 0 cx, 0 fy cy, 0 0 1");
   }
-  intrinsics.focal_px = {K[0], K[4]};
-  intrinsics.principal_px = {K[2], K[5]};
-  const double largest_focal = 1e3 * std::max(intrinsics.width_px, intrinsics.height_px);
-  if (!(intrinsics.focal_px.minCoeff() > 0) || intrinsics.focal_px.maxCoeff() > largest_focal) {
-    reader.fail("the focal lengths are not positive or not believable");
-  }
-  // Half an image outside still leaves room for crops.
-  const Eigen::Vector2d size(intrinsics.width_px, intrinsics.height_px);
-  const Eigen::Vector2d relative = intrinsics.principal_px.cwiseQuotient(size);
-  if (!(relative.minCoeff() > -0.5) || !(relative.maxCoeff() < 1.5)) {
-    reader.fail("the principal point lies far outside the image");
-  }
+  record.focal_px = {K[0], K[4]};
+  record.principal_px = {K[2], K[5]};
 }
 
-void read_distortion(const CameraReader& reader, core::CameraModel::Intrinsics& intrinsics) {
-  const std::vector<double> k = reader.matrix("distortion_coefficients", 14);
-  if (k.size() != 4 && k.size() != 5 && k.size() != 8) {
-    reader.fail("distortion_coefficients has " + std::to_string(k.size()) +
-                " entries, only 4, 5 or 8 are understood");
+/// What the file says about the kind of its lens; radial where it says nothing.
+LensKind kind_of(const KeyReader& reader) {
+  const std::string camera = reader.text({"camera_model", "model_type", "camera_type"});
+  const std::string distortion = reader.text({"distortion_model", "distortion_type"});
+  const std::string flag = reader.text({"fisheye_model", "fisheye", "is_fisheye"});
+  const auto is_one_of = [](const std::string& name, std::initializer_list<const char*> names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if ((!flag.empty() && flag != "0" && flag != "false") ||
+      is_one_of(distortion, {"equidistant", "fisheye", "kannala_brandt", "equi"}) ||
+      is_one_of(camera, {"fisheye", "opencv_fisheye", "kannala_brandt", "equidistant"})) {
+    return LensKind::equidistant;
   }
-  std::copy(k.begin(), k.end(), intrinsics.distortion.begin());
+  if (!is_one_of(camera, {"", "pinhole", "opencv", "perspective", "simple_pinhole", "radial",
+                          "simple_radial", "brown"})) {
+    reader.fail("camera_model is " + core::quotable(camera) + ", which is not modelled",
+                "calibrate as a pinhole camera with radial and tangential distortion");
+  }
+  if (!is_one_of(distortion, {"", "plumb_bob", "radtan", "rational_polynomial", "none", "brown",
+                              "radial-tangential", "modified_brown_conrady"})) {
+    reader.fail("distortion_model is " + core::quotable(distortion) + ", which is not modelled",
+                "calibrate with plumb_bob or rational_polynomial (radial and tangential)");
+  }
+  return LensKind::radial;
+}
+
+/// OpenCV, ROS, and what Python programs dump under the same names.
+LensRecord matrix_record(const KeyReader& reader) {
+  LensRecord record;
+  read_size(reader, record);
+  read_camera_matrix(reader, record);
+  record.kind = kind_of(reader);
+  const auto* words =
+      reader.find({"distortion_coefficients", "Distortion_Coefficients", "distCoeffs",
+                   "dist_coeffs", "dist_coeff", "distortion_coeffs", "D", "d", "dist"});
+  if (words == nullptr) {
+    reader.fail("distortion_coefficients is missing or no matrix of the expected size");
+  }
+  record.distortion = reader.numbers("distortion_coefficients", *words);
+  return record;
+}
+
+LensRecord kalibr_record(const KeyReader& reader) {
+  LensRecord record;
+  read_size(reader, record);
+  record.kind = kind_of(reader);
+  const std::vector<double> f = reader.numbers("intrinsics", *reader.find({"intrinsics"}));
+  if (f.size() != 4) reader.fail("intrinsics is no list of fu, fv, pu, pv");
+  record.focal_px = {f[0], f[1]};
+  record.principal_px = {f[2], f[3]};
+  if (const auto* words = reader.find({"distortion_coeffs", "distortion_coefficients"})) {
+    record.distortion = reader.numbers("distortion_coeffs", *words);
+  } else if (reader.text({"distortion_model"}) != "none") {
+    reader.fail("distortion_coeffs is missing");
+  }
+  return record;
+}
+
+/// nerfstudio and instant-ngp: pixels counted from the corner of the first one.
+LensRecord nerfstudio_record(const KeyReader& reader) {
+  LensRecord record;
+  read_size(reader, record);
+  record.kind = kind_of(reader);
+  const double fx = reader.number_of("fl_x", 0);
+  record.focal_px = {fx, reader.number_of("fl_y", fx)};
+  record.principal_px = {reader.number_of("cx", record.width_px / 2.0) - 0.5,
+                         reader.number_of("cy", record.height_px / 2.0) - 0.5};
+  const auto k = [&reader](const char* name) { return reader.number_of(name, 0); };
+  record.distortion = record.kind == LensKind::equidistant
+                          ? std::vector<double>{k("k1"), k("k2"), k("k3"), k("k4")}
+                          : std::vector<double>{k("k1"), k("k2"), k("p1"), k("p2"), k("k3")};
+  return record;
+}
+
+/// Agisoft: principal point from the middle of the image, p1 and p2 the other way round, a term k4
+/// of the eighth power and a skew b2 that OpenCV's model lacks.
+LensRecord agisoft_record(const KeyReader& reader) {
+  LensRecord record;
+  record.width_px = reader.side("width", {"width"});
+  record.height_px = reader.side("height", {"height"});
+  const std::string projection = reader.text({"projection"});
+  if (projection == "fisheye" || projection == "equidistant_fisheye") {
+    record.kind = LensKind::equidistant;
+  } else if (projection != "frame" && !projection.empty()) {
+    reader.fail("projection is " + core::quotable(projection) + ", which is not modelled",
+                "calibrate as a frame camera");
+  }
+  if (!reader.has("f")) {
+    reader.fail(reader.has("fx") ? "is of an old version of PhotoScan (fx, fy)" : "f is missing",
+                "export the calibration from Metashape, as Agisoft or OpenCV XML");
+  }
+  const double f = reader.number_of("f", 0);
+  record.focal_px = {f + reader.number_of("b1", 0), f};
+  record.principal_px = {record.width_px / 2.0 + reader.number_of("cx", 0) - 0.5,
+                         record.height_px / 2.0 + reader.number_of("cy", 0) - 0.5};
+  const auto k = [&reader](const char* name) { return reader.number_of(name, 0); };
+  const double corner = std::hypot(record.width_px, record.height_px) / 2 / std::max(f, 1e-9);
+  const bool is_fisheye = record.kind == LensKind::equidistant;
+  const auto refuse = [&](const char* term) {
+    reader.fail(std::string(term) + " is not 0, a term that is not modelled",
+                std::string("adjust the calibration without ") + term);
+  };
+  if (std::abs(k("b2")) * corner > kInvisible_px) refuse("b2");
+  if (!is_fisheye && std::abs(k("k4") * f * std::pow(corner, 9)) > kInvisible_px) refuse("k4");
+  if (k("p3") != 0 || k("p4") != 0) refuse("p3");
+  if (is_fisheye && (k("p1") != 0 || k("p2") != 0)) refuse("p1");
+  record.distortion = is_fisheye ? std::vector<double>{k("k1"), k("k2"), k("k3"), k("k4")}
+                                 : std::vector<double>{k("k1"), k("k2"), k("p2"), k("p1"), k("k3")};
+  return record;
+}
+
+LensRecord record_of(const CameraDocument& document, const std::filesystem::path& path) {
+  if (document.record) return *document.record;
+  const KeyReader reader(document.keys, path);
+  if (document.is_agisoft) return agisoft_record(reader);
+  if (reader.has("intrinsics")) return kalibr_record(reader);
+  if (reader.has("fl_x")) return nerfstudio_record(reader);
+  return matrix_record(reader);
 }
 
 }  // namespace
 
 core::CameraModel read_camera(const std::filesystem::path& path) {
-  try {
-    const CameraReader reader(path);
-    core::CameraModel::Intrinsics intrinsics;
-    intrinsics.width_px = reader.side("image_width");
-    intrinsics.height_px = reader.side("image_height");
-    read_camera_matrix(reader, intrinsics);
-    read_distortion(reader, intrinsics);
-    core::CameraModel camera(intrinsics);
-    if (!(camera.valid_radius() > 0.01)) reader.fail("the distortion folds the image over");
-    return camera;
-  } catch (const core::Error&) {
-    throw;
-  } catch (const std::exception&) {
-    // OpenCV's parser answers garbage with its own exceptions and with std::length_error.
-    throw core::bad_input(path, "is not in OpenCV's FileStorage form", kRemedy);
-  }
+  return camera_of(record_of(parse_camera_document(read_text_file(path, kMaxBytes), path), path),
+                   path);
 }
 
 void write_camera(const std::filesystem::path& path, const core::CameraModel& camera) {

@@ -7,9 +7,13 @@
 
 namespace sheen::capture {
 
-/// camera.yaml in OpenCV's FileStorage form: image_width, image_height, camera_matrix,
-/// distortion_coefficients with 4, 5 or 8 entries. Throws core::Error (bad_input).
+/// A camera file of any of the programs that docs/input.md names: OpenCV's FileStorage (YAML, XML,
+/// JSON), ROS' camera_info, Kalibr's camchain, Agisoft's calibration, COLMAP's cameras.txt,
+/// nerfstudio's transforms.json. Pixels are brought to OpenCV's convention. Throws core::Error
+/// (bad_input), for lenses that are not modelled too.
 core::CameraModel read_camera(const std::filesystem::path& path);
+
+/// Writes OpenCV's FileStorage form.
 void write_camera(const std::filesystem::path& path, const core::CameraModel& camera);
 
 }  // namespace sheen::capture

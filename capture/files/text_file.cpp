@@ -2,6 +2,7 @@
 #include "capture/files/text_file.h"
 
 #include "core/diagnostics/error.h"
+#include "core/text/text_form.h"
 
 #include <fstream>
 #include <system_error>
@@ -10,6 +11,9 @@ namespace sheen::capture {
 
 std::string read_text_file(const std::filesystem::path& path, std::size_t max_bytes) {
   std::error_code no_throw;
+  if (std::filesystem::is_directory(path, no_throw)) {
+    throw core::bad_input(path, "is a folder, not a file", "name the file in it");
+  }
   if (!std::filesystem::is_regular_file(path, no_throw)) {
     throw core::bad_input(path, "there is no such file", "check the path");
   }
@@ -25,6 +29,7 @@ std::string read_text_file(const std::filesystem::path& path, std::size_t max_by
   if (static_cast<std::size_t>(in.gcount()) != text.size()) {
     throw core::bad_input(path, "cannot be read to its end", "check the disk");
   }
+  core::normalise_text(text, path);
   return text;
 }
 

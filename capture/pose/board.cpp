@@ -5,11 +5,13 @@
 #include "capture/pose/tag_family.h"
 #include "core/diagnostics/error.h"
 #include "core/files/write_file.h"
+#include "core/text/number.h"
 
 #include <yaml-cpp/yaml.h>
 
 #include <cmath>
 #include <iomanip>
+#include <limits>
 #include <locale>
 #include <sstream>
 
@@ -37,24 +39,29 @@ class BoardReader {
                               std::optional<double> fallback = std::nullopt) const {
     const YAML::Node value = node[key];
     if (!value && fallback) return *fallback;
-    double result = 0;
-    if (!value || !value.IsScalar() || !YAML::convert<double>::decode(value, result) ||
-        !(std::abs(result) <= kMaxExtentM)) {
-      fail(std::string(key) + " is missing or no usable number");
+    if (!value) fail(std::string(key) + " is missing");
+    if (!value.IsScalar()) fail(std::string(key) + " is no usable number");
+    const std::string& word = value.Scalar();
+    // YAML writes nan and inf with a point before them.
+    const auto result = core::parse_number(word.starts_with('.') ? "0" + word : word);
+    if (!result || !(std::abs(*result) <= kMaxExtentM)) {
+      fail(std::string(key) + " is no usable number: " +
+           (result ? core::quotable(word) + " is too large" : core::why_no_number(word)));
     }
-    return result;
+    return *result;
   }
 
   [[nodiscard]] int whole_number(const YAML::Node& node, const char* key, int least,
                                  std::optional<int> fallback = std::nullopt) const {
     const YAML::Node value = node[key];
     if (!value && fallback) return *fallback;
-    int result = 0;
-    if (!value || !value.IsScalar() || !YAML::convert<int>::decode(value, result) ||
-        result < least) {
+    // In decimal, whatever the leading zeros: YAML would read 010 as 8.
+    const auto result =
+        value && value.IsScalar() ? core::parse_whole_number(value.Scalar()) : std::nullopt;
+    if (!result || *result < least || *result > std::numeric_limits<int>::max()) {
       fail(std::string(key) + " is missing or not a whole number from " + std::to_string(least));
     }
-    return result;
+    return static_cast<int>(*result);
   }
 
   [[nodiscard]] double size(const YAML::Node& node, const char* key) const {
@@ -68,6 +75,17 @@ class BoardReader {
     if (!value) return fallback;
     if (!value.IsScalar()) fail(std::string(key) + " is no text");
     return value.Scalar();
+  }
+
+  /// Within braces a decimal comma splits a number: what follows it stands alone.
+  void check_for_decimal_commas(const YAML::Node& entry) const {
+    for (const auto& member : entry) {
+      if (!member.first.IsScalar() || !member.second.IsNull()) continue;
+      if (core::parse_whole_number(member.first.Scalar())) {
+        fail("has numbers with decimal commas, such as before " +
+             core::quotable(member.first.Scalar()) + "; write points");
+      }
+    }
   }
 
   void add(Board& board, int id, const Board::Tag& tag) const {
@@ -84,8 +102,8 @@ class BoardReader {
 TagFamily known_family(const BoardReader& reader, const Board& board) {
   const auto family = find_tag_family(board.family, board.border_bits);
   if (!family) {
-    reader.fail("no detector knows the tag family \"" + board.family + "\" with a border of " +
-                std::to_string(board.border_bits) + " bits");
+    reader.fail("tag_family: no detector knows the family \"" + core::quotable(board.family) +
+                "\" with a border of " + std::to_string(board.border_bits) + " bits");
   }
   return *family;
 }
@@ -102,10 +120,44 @@ Board::Tag read_tag(const BoardReader& reader, const YAML::Node& node) {
   return tag;
 }
 
+/// ROS 2 writes 36h11 and Standard41h12 for what the library calls tag36h11 and tagStandard41h12.
+std::string usual_name(const std::string& family) {
+  if (find_tag_family(family, 1) || family.starts_with("DICT_")) return family;
+  std::string name = family;
+  if (name.size() > 3 && (name.starts_with("TAG") || name.starts_with("Tag"))) {
+    name.replace(0, 3, "tag");
+  } else if (!name.starts_with("tag")) {
+    name.insert(0, "tag");
+  }
+  return find_tag_family(name, 1) ? name : family;
+}
+
+/// Refuses files that say something about tags or boards, but not where tags lie.
+[[noreturn]] void refuse_other_form(const BoardReader& reader) {
+  const std::string target = reader.text("target_type", "");
+  if (!target.empty()) {
+    reader.fail("target_type is " + core::quotable(target) +
+                ", a board without tags: poses need tags (target_type: 'aprilgrid')");
+  }
+  if (reader.root()["standalone_tags"]) {
+    reader.fail(
+        "has standalone_tags only: tag_bundles is missing, which says where tags lie "
+        "against each other");
+  }
+  for (const auto& member : reader.root()) {
+    if (member.second.IsMap() && member.second["ros__parameters"]) {
+      reader.fail(
+          "is a file of ROS 2's apriltag_ros, which does not say where tags lie against "
+          "each other: tag_bundles is missing");
+    }
+  }
+  reader.fail("has neither tag_bundles nor target_type: 'aprilgrid'");
+}
+
 /// apriltag_ros: every bundle is a list of tags in the common board frame.
 Board read_bundles(const BoardReader& reader) {
   Board board;
-  board.family = reader.text("tag_family", "tag36h11");
+  board.family = usual_name(reader.text("tag_family", "tag36h11"));
   board.border_bits = reader.whole_number(reader.root(), "border_bits", 1, 1);
   const int codes = code_count(known_family(reader, board));
   const YAML::Node bundles = reader.root()["tag_bundles"];
@@ -115,6 +167,7 @@ Board read_bundles(const BoardReader& reader) {
     if (!layout.IsSequence()) reader.fail("a bundle has no layout");
     for (const YAML::Node& entry : layout) {
       if (!entry.IsMap()) reader.fail("a layout holds something that is no tag");
+      reader.check_for_decimal_commas(entry);
       const int id = reader.whole_number(entry, "id", 0);
       if (id >= codes) {
         reader.fail("tag " + std::to_string(id) + " is not in the family " + board.family);
@@ -130,7 +183,7 @@ Board read_bundles(const BoardReader& reader) {
 /// degrees).
 Board read_aprilgrid(const BoardReader& reader) {
   Board board;
-  board.family = reader.text("tag_family", "tag36h11");
+  board.family = usual_name(reader.text("tag_family", "tag36h11"));
   board.border_bits = reader.whole_number(reader.root(), "border_bits", 1, 2);
   const int codes = code_count(known_family(reader, board));
   const int columns = reader.whole_number(reader.root(), "tagCols", 1);
@@ -174,13 +227,20 @@ Board read_board(const std::filesystem::path& path) {
     } else if (reader.text("target_type", "") == "aprilgrid") {
       board = read_aprilgrid(reader);
     } else {
-      reader.fail("has neither tag_bundles nor target_type: 'aprilgrid'");
+      refuse_other_form(reader);
+    }
+    if (board.tags.empty() && reader.root()["standalone_tags"]) {
+      reader.fail(
+          "has standalone_tags only: tag_bundles is empty, which says where tags lie against "
+          "each other");
     }
     if (board.tags.empty()) reader.fail("holds no tag");
     return board;
   } catch (const YAML::Exception& error) {
-    throw core::bad_input(
-        path, "is no valid YAML (line " + std::to_string(error.mark.line + 1) + ")", kRemedy);
+    throw core::bad_input(path,
+                          "is no valid YAML (line " + std::to_string(error.mark.line + 1) +
+                              "; tabs may not indent, a blank follows every colon)",
+                          kRemedy);
   }
 }
 

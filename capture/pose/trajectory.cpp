@@ -4,11 +4,11 @@
 #include "capture/files/text_file.h"
 #include "core/diagnostics/error.h"
 #include "core/files/write_file.h"
+#include "core/text/number.h"
 
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <charconv>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -29,23 +29,62 @@ bool is_integer(double stamp) {
   throw core::bad_input(path, "line " + std::to_string(line) + " " + fault, kRemedy);
 }
 
-/// Exactly eight numbers, whatever the locale.
-bool parse_numbers(std::string_view text, std::array<double, 8>& numbers) {
-  constexpr std::string_view blanks = " \t\r";
-  for (double& number : numbers) {
+std::vector<std::string_view> words_of(std::string_view text) {
+  constexpr std::string_view blanks = " \t";
+  std::vector<std::string_view> words;
+  while (true) {
     text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
-    if (text.starts_with('+')) text.remove_prefix(1);
-    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (status != std::errc()) return false;
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
-    if (!text.empty() && blanks.find(text.front()) == std::string_view::npos) return false;
+    if (text.empty()) return words;
+    words.push_back(text.substr(0, text.find_first_of(blanks)));
+    text.remove_prefix(words.back().size());
   }
-  return text.find_first_not_of(blanks) == std::string_view::npos;
 }
 
-Trajectory::Entry parse_line(const std::filesystem::path& path, int line, std::string_view text) {
-  std::array<double, 8> n{};
-  if (!parse_numbers(text, n)) fail(path, line, "does not hold eight numbers");
+/// What a line of another form is, as far as it is known; empty for one of no known form.
+std::string known_form(std::string_view text, const std::vector<std::string_view>& words) {
+  const auto commas = std::count(text.begin(), text.end(), ',');
+  const bool is_heading = std::any_of(text.begin(), text.end(), [](char c) {
+    return (c >= 'a' && c <= 'z' && c != 'e' && c != 'd') || c == '_';
+  });
+  if (is_heading && words.size() > 1 && !core::parse_number(words[0])) {
+    return "is a heading; begin it with #";
+  }
+  if (words.size() >= 8 && core::has_decimal_comma(words[1])) {
+    return "has decimal commas; write points";
+  }
+  if (commas >= 7) return "separates by commas; separate by blanks, in the order of TUM";
+  if (std::count(text.begin(), text.end(), ';') >= 7) {
+    return "separates by semicolons; separate by blanks, in the order of TUM";
+  }
+  if (words.size() == 12) return "holds twelve numbers, a matrix as KITTI writes it";
+  if (words.size() == 16) return "holds sixteen numbers, a matrix";
+  if (words.size() == 7) return "holds seven numbers: the stamp is missing";
+  return {};
+}
+
+/// Exactly eight numbers.
+std::array<double, 8> numbers_of(const std::filesystem::path& path, int line, std::string_view text,
+                                 const std::vector<std::string_view>& words) {
+  const auto refuse = [&](const std::string& why) {
+    const std::string form = known_form(text, words);
+    fail(path, line, "does not hold eight numbers: it " + (form.empty() ? why : form));
+  };
+  std::array<double, 8> numbers{};
+  if (words.size() != 8) refuse("holds " + std::to_string(words.size()) + " words");
+  for (std::size_t i = 0; i < 8; ++i) {
+    const auto number = core::parse_number(words[i]);
+    if (!number) refuse("says " + core::why_no_number(words[i]));
+    numbers[i] = number.value_or(0);
+  }
+  return numbers;
+}
+
+/// `is_whole` is cleared by a stamp that is written with a decimal point or an exponent.
+Trajectory::Entry parse_line(const std::filesystem::path& path, int line, std::string_view text,
+                             bool& is_whole) {
+  const std::vector<std::string_view> words = words_of(text);
+  const std::array<double, 8> n = numbers_of(path, line, text, words);
+  is_whole = is_whole && words[0].find_first_not_of("+-0123456789") == std::string_view::npos;
   if (!std::all_of(n.begin(), n.end(), [](double v) { return std::isfinite(v); })) {
     fail(path, line, "holds a number that is not finite");
   }
@@ -53,7 +92,11 @@ Trajectory::Entry parse_line(const std::filesystem::path& path, int line, std::s
   if (!(position.cwiseAbs().maxCoeff() < kMaxDistanceM)) fail(path, line, "lies too far away");
   const Eigen::Quaterniond rotation(n[7], n[4], n[5], n[6]);
   // Files carry few digits; anything far from length one is something else than a rotation.
-  if (!(std::abs(rotation.norm() - 1) < 0.05)) fail(path, line, "holds no unit quaternion");
+  if (!(std::abs(rotation.norm() - 1) < 0.05)) {
+    fail(path, line,
+         rotation.norm() == 0 ? "holds a rotation of four zeros, as a lost pose has: leave it out"
+                              : "holds no unit quaternion");
+  }
   Trajectory::Entry entry{n[0], Eigen::Isometry3d::Identity()};
   entry.board_from_camera.linear() = rotation.normalized().toRotationMatrix();
   entry.board_from_camera.translation() = position;
@@ -62,19 +105,24 @@ Trajectory::Entry parse_line(const std::filesystem::path& path, int line, std::s
 
 }  // namespace
 
-Trajectory::Trajectory(std::vector<Entry> entries) : entries_(std::move(entries)) {
+Trajectory::Trajectory(std::vector<Entry> entries, std::optional<Stamps> stamps)
+    : entries_(std::move(entries)) {
   std::sort(entries_.begin(), entries_.end(),
             [](const Entry& a, const Entry& b) { return a.stamp < b.stamp; });
-  stamps_are_indices_ = std::all_of(entries_.begin(), entries_.end(),
-                                    [](const Entry& e) { return is_integer(e.stamp); });
+  const bool are_whole = std::all_of(entries_.begin(), entries_.end(),
+                                     [](const Entry& e) { return is_integer(e.stamp); });
+  stamps_ = stamps.value_or(are_whole ? Stamps::indices : Stamps::seconds);
 }
 
 std::optional<Eigen::Isometry3d> Trajectory::board_from_camera(const Frame& frame,
                                                                double fps) const {
   assert(fps > 0);
   if (entries_.empty()) return std::nullopt;
-  const double wanted = stamps_are_indices_ ? frame.index : frame.time_s;
-  const double tolerance = stamps_are_indices_ ? 0 : 0.5 / fps;
+  const bool are_indices = stamps_ == Stamps::indices;
+  const double wanted = are_indices ? frame.index : frame.time_s;
+  // A millionth of a second more: stamps are written with six digits.
+  const double spacing_s = frame.spacing_s > 0 ? frame.spacing_s : 1 / fps;
+  const double tolerance = are_indices ? 0 : 0.5 * spacing_s + 1e-6;
 
   // Look at the entries on both sides of the wanted stamp.
   auto nearest = std::lower_bound(entries_.begin(), entries_.end(), wanted,
@@ -92,20 +140,22 @@ Trajectory read_trajectory(const std::filesystem::path& path) {
   std::istringstream in(read_text_file(path, kMaxBytes));
   std::vector<Trajectory::Entry> entries;
   std::string text;
+  bool is_whole = true;
   for (int line = 1; std::getline(in, text); ++line) {
-    const std::size_t first = text.find_first_not_of(" \t\r");
+    const std::size_t first = text.find_first_not_of(" \t");
     if (first == std::string::npos || text[first] == '#') continue;
-    entries.push_back(parse_line(path, line, text));
+    entries.push_back(parse_line(path, line, text, is_whole));
   }
   if (entries.empty()) throw core::bad_input(path, "holds no pose", kRemedy);
 
-  Trajectory trajectory(std::move(entries));
+  Trajectory trajectory(std::move(entries), is_whole ? Stamps::indices : Stamps::seconds);
   const auto& sorted = trajectory.entries();
   const auto twice =
       std::adjacent_find(sorted.begin(), sorted.end(),
                          [](const auto& a, const auto& b) { return a.stamp == b.stamp; });
   if (twice != sorted.end()) {
     std::ostringstream fault;
+    fault.precision(18);
     fault << "has two poses with the stamp " << twice->stamp;
     throw core::bad_input(path, fault.str(), "keep one line per frame");
   }

@@ -11,9 +11,12 @@
 
 namespace sheen::capture {
 
+/// What the stamps of poses count: frames from 0, or seconds since the first frame.
+enum class Stamps { indices, seconds };
+
 /// Poses of a recording in TUM form: one line per frame, `stamp tx ty tz qx qy qz qw`, the
-/// transform board_from_camera in metres. Stamps are frame indices, or seconds when any has a
-/// fraction.
+/// transform board_from_camera in metres. Stamps are frame indices when all are written as whole
+/// numbers, without a decimal point; otherwise seconds.
 class Trajectory {
  public:
   struct Entry {
@@ -22,17 +25,21 @@ class Trajectory {
   };
 
   Trajectory() = default;
-  explicit Trajectory(std::vector<Entry> entries);
+  /// Without a word about the stamps they are indices when all are whole.
+  explicit Trajectory(std::vector<Entry> entries, std::optional<Stamps> stamps = std::nullopt);
 
   [[nodiscard]] const std::vector<Entry>& entries() const { return entries_; }
 
-  /// Pose of a frame: by index, or for stamps in seconds the entry within half a frame (`1 / fps`).
+  [[nodiscard]] Stamps stamps() const { return stamps_; }
+
+  /// Pose of a frame: by index, or for stamps in seconds the nearest entry within half a frame:
+  /// half of Frame::spacing_s, or of 1 / `fps` where the frame does not know.
   [[nodiscard]] std::optional<Eigen::Isometry3d> board_from_camera(const Frame& frame,
                                                                    double fps) const;
 
  private:
   std::vector<Entry> entries_;
-  bool stamps_are_indices_ = true;
+  Stamps stamps_ = Stamps::indices;
 };
 
 /// Throws core::Error (bad_input): unreadable lines, numbers that are not finite, zero quaternions,

@@ -2,14 +2,15 @@
 #include "capture/registration/placement.h"
 
 #include "capture/files/text_file.h"
+#include "capture/plausibility/unit_guess.h"
 #include "core/diagnostics/error.h"
 #include "core/mesh/bounds.h"
+#include "core/text/number.h"
 
 #include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
-#include <locale>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -19,8 +20,9 @@ namespace {
 
 constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
 constexpr std::size_t kMinPairs = 3;
-constexpr double kFarthestM = 1e3;
-constexpr double kNarrowest = 1e-3;  // width over length of points that lie on one line
+constexpr double kFarthestM = 1e9;    // meshes may lie in survey coordinates
+constexpr double kMostStretch = 1.3;  // of the points' spread on the board over that in the mesh
+constexpr double kNarrowest = 1e-3;   // width over length of points that lie on one line
 constexpr const char* kRemedy =
     "write one pair a line: x y z in the mesh, x y z on the board, metres";
 
@@ -29,15 +31,21 @@ std::optional<PointPair> parse_line(std::string line, const std::filesystem::pat
                                     int number) {
   line.erase(std::min(line.find('#'), line.size()));
   std::istringstream in(line);
-  in.imbue(std::locale::classic());
   if ((in >> std::ws).eof()) return std::nullopt;
   PointPair pair;
   for (Eigen::Vector3d* point : {&pair.in_object, &pair.in_board}) {
     for (int i = 0; i < 3; ++i) {
-      if (!(in >> (*point)[i]) || !(std::abs((*point)[i]) <= kFarthestM)) {
-        throw core::bad_input(path, "line " + std::to_string(number) + " holds no six numbers",
-                              kRemedy);
+      std::string word;
+      in >> word;
+      const auto value = core::parse_number(word);
+      if (!value || !(std::abs(*value) <= kFarthestM)) {
+        throw core::bad_input(
+            path,
+            "line " + std::to_string(number) + " holds no six numbers: " +
+                (value ? core::quotable(word) + " is too large" : core::why_no_number(word)),
+            kRemedy);
       }
+      (*point)[i] = *value;
     }
   }
   if (!(in >> std::ws).eof()) {
@@ -73,6 +81,20 @@ PairPlacement place_by_pairs(const std::vector<PointPair>& pairs,
     if (!(svd.singularValues()[1] > kNarrowest * svd.singularValues()[0])) {
       throw core::bad_input(path, "holds points on one line", "pick three that span a triangle");
     }
+  }
+  const double span_object_m = (object.colwise() - object.rowwise().mean()).norm();
+  const double span_board_m = (board.colwise() - board.rowwise().mean()).norm();
+  const double stretch = span_board_m / span_object_m;
+  if (stretch > kMostStretch || stretch < 1 / kMostStretch) {
+    const bool is_mesh_larger = span_object_m > span_board_m;
+    const double larger = std::max(span_object_m, span_board_m);
+    const double smaller = std::min(span_object_m, span_board_m);
+    throw core::bad_input(path,
+                          "its points span " + length_text(span_object_m) + " in the mesh and " +
+                              length_text(span_board_m) + " on the board",
+                          unit_question(larger, smaller / kMostStretch, smaller * kMostStretch,
+                                        "both must be metres, and the pairs the same points") +
+                              (is_mesh_larger ? " (in the mesh)" : " (on the board)"));
   }
   PairPlacement placement;
   placement.board_from_object = Eigen::Isometry3d(Eigen::umeyama(object, board, false));

@@ -37,15 +37,19 @@ class LiveFrames : public FrameSource {
 
   [[nodiscard]] std::optional<int> frame_count() const override { return std::nullopt; }
 
+  [[nodiscard]] SourceReport report() const override { return {damaged_, {}}; }
+
  private:
   std::optional<Frame> decode(std::span<const std::uint8_t> jpeg, std::int64_t time_us) {
     const int index = read_++;
     const auto size = jpeg_size(jpeg);
+    ++damaged_;
     if (!size) return std::nullopt;
     const CameraDescription camera = recording_.status().description;
     check_image_size(camera.device, *size, {camera.width_px, camera.height_px});
     Frame frame;
     if (!decode_jpeg(jpeg, *size, frame.image)) return std::nullopt;
+    --damaged_;
     frame.time_s = stamp_seconds(time_us);
     frame.index = index;
     return frame;
@@ -65,6 +69,7 @@ class LiveFrames : public FrameSource {
   CameraRecording& recording_;
   std::optional<AviReader> reader_;
   int read_ = 0;
+  int damaged_ = 0;
 };
 
 CameraRecording::CameraRecording(std::unique_ptr<Camera> camera, SessionRecorder& recorder,

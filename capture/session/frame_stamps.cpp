@@ -4,6 +4,7 @@
 #include "capture/files/text_file.h"
 #include "core/diagnostics/error.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cinttypes>
@@ -41,11 +42,17 @@ class StampedSource : public FrameSource {
 
   std::optional<Frame> next() override {
     auto frame = source_->next();
-    if (frame) frame->time_s = times_s_.at(static_cast<std::size_t>(frame->index));
+    if (!frame) return frame;
+    const auto i = static_cast<std::size_t>(frame->index);
+    frame->time_s = times_s_.at(i);
+    const std::size_t next = std::min(i + 1, times_s_.size() - 1);
+    frame->spacing_s = i > 0 ? times_s_[i] - times_s_[i - 1] : times_s_[next] - times_s_[0];
     return frame;
   }
 
   [[nodiscard]] std::optional<int> frame_count() const override { return source_->frame_count(); }
+
+  [[nodiscard]] SourceReport report() const override { return source_->report(); }
 
  private:
   std::unique_ptr<FrameSource> source_;

@@ -229,6 +229,7 @@ Session open_session(const std::filesystem::path& folder) {
   const auto camera = reader.inner_file(reader.root(), "camera");
   if (!camera) reader.fail("names no \"camera\"");
   session.camera = read_camera(*camera);
+  session.camera_file = *camera;
   session.warnings = std::move(reader.warnings);
   return session;
 }

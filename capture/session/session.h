@@ -24,8 +24,9 @@ struct Session {
   std::optional<std::filesystem::path>
       stamps;  ///< frames.csv: when each frame was taken; wins over fps
   core::CameraModel camera;
-  std::optional<std::filesystem::path> board;  ///< board.yaml
-  std::optional<std::filesystem::path> poses;  ///< poses.txt; wins over the board
+  std::optional<std::filesystem::path> camera_file;  ///< camera.yaml, where it was read from a file
+  std::optional<std::filesystem::path> board;        ///< board.yaml
+  std::optional<std::filesystem::path> poses;        ///< poses.txt; wins over the board
   std::filesystem::path mesh;
   /// Places the mesh, less `mesh_offset`, on the board; as read, the mesh as its file has it.
   Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();

@@ -2,9 +2,9 @@
 #include "capture/source/image_folder_source.h"
 
 #include "capture/source/image_check.h"
+#include "capture/source/image_facts.h"
+#include "capture/source/still_reader.h"
 #include "core/diagnostics/error.h"
-
-#include <opencv2/imgcodecs.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -52,9 +52,15 @@ class ImageFolderSource : public FrameSource {
 
   [[nodiscard]] std::optional<int> frame_count() const override { return end_ - range_.start; }
 
+  [[nodiscard]] SourceReport report() const override { return {0, reader_.notes()}; }
+
  private:
   void count_images() {
     const auto folder = session_folder_ / name_.folder();
+    if (const auto kind = unreadable_ending(name_.at(0))) {
+      throw core::bad_input(session_folder_ / name_.at(0),
+                            "pictures of " + kind->name + " are not read", kind->remedy);
+    }
     const std::set<int> numbers = find_numbers(folder, name_);
     if (numbers.empty() || *numbers.begin() > 1) {
       throw core::bad_input(session_folder_ / name_.at(0), "there is no first image",
@@ -71,19 +77,11 @@ class ImageFolderSource : public FrameSource {
 
   std::optional<Frame> read() {
     if (next_ >= end_) return std::nullopt;
-    const auto path = session_folder_ / name_.at(first_ + next_);
-    cv::Mat image;
-    try {
-      image = cv::imread(path.string(), cv::IMREAD_COLOR);
-    } catch (const cv::Exception&) {
-      image.release();  // OpenCV throws for absurd sizes and returns nothing for other faults
-    }
-    if (image.empty()) {
-      throw core::bad_input(path, "cannot be read as an image", "check that it is complete");
-    }
-    check_image_size(path, {image.cols, image.rows}, size_);
+    cv::Mat image = reader_.read(session_folder_ / name_.at(first_ + next_), size_);
     const int index = next_++;
-    return Frame{std::move(image), index / fps_, index};
+    Frame frame{std::move(image), index / fps_, index};
+    frame.spacing_s = 1 / fps_;
+    return frame;
   }
 
   std::filesystem::path session_folder_;
@@ -95,6 +93,7 @@ class ImageFolderSource : public FrameSource {
   int count_ = 0;
   int next_ = 0;
   int end_ = 0;
+  StillReader reader_;
   std::optional<Frame> waiting_;
 };
 

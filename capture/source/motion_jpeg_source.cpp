@@ -5,6 +5,7 @@
 #include "capture/source/image_check.h"
 #include "capture/source/jpeg_decoder.h"
 #include "capture/source/recording_end.h"
+#include "capture/source/stated_rate.h"
 
 #include <algorithm>
 #include <utility>
@@ -24,7 +25,7 @@ class MotionJpegSource : public FrameSource {
  public:
   MotionJpegSource(std::filesystem::path path, AviReader reader, const ImageSize& size,
                    const FrameRange& range, std::optional<double> fps)
-      : path_(std::move(path)), reader_(std::move(reader)), size_(size), range_(range), fps_(fps) {
+      : path_(std::move(path)), reader_(std::move(reader)), size_(size), range_(range), rate_(fps) {
     check_range(path_, range_, promised());
     // Decode the first wanted frame now: faults show before long work starts.
     while (read_ < range_.start) {
@@ -43,6 +44,14 @@ class MotionJpegSource : public FrameSource {
     if (!promised() && !range_.end) return std::nullopt;
     return std::min(promised().value_or(*range_.end), range_.end.value_or(*promised())) -
            range_.start;
+  }
+
+  [[nodiscard]] SourceReport report() const override {
+    SourceReport report{damaged_, {}};
+    if (const auto disagreement = rate_.disagreement()) {
+      report.notes.push_back(path_.string() + ": " + *disagreement);
+    }
+    return report;
   }
 
  private:
@@ -65,13 +74,17 @@ class MotionJpegSource : public FrameSource {
       }
       const auto jpeg = reader_.read();
       const auto stated = jpeg_size(jpeg);
-      if (!stated) continue;
-      check_image_size(path_, *stated, size_);
+      if (stated) check_image_size(path_, *stated, size_);
       Frame frame;
-      if (!decode_jpeg(jpeg, size_, frame.image)) continue;
+      if (!stated || !decode_jpeg(jpeg, size_, frame.image)) {
+        ++damaged_;
+        continue;
+      }
       frame.index = read_ - 1;
-      frame.time_s =
-          fps_ ? frame.index / *fps_ : (reader_.slot() - first_slot_) / reader_.header().fps;
+      const double own_time_s = (reader_.slot() - first_slot_) / reader_.header().fps;
+      rate_.compare(frame.index, own_time_s);
+      frame.time_s = rate_.time_s(frame.index).value_or(own_time_s);
+      frame.spacing_s = rate_.spacing_s().value_or(1 / reader_.header().fps);
       return frame;
     }
     return std::nullopt;
@@ -81,7 +94,8 @@ class MotionJpegSource : public FrameSource {
   AviReader reader_;
   ImageSize size_;
   FrameRange range_;
-  std::optional<double> fps_;
+  StatedRate rate_;
+  int damaged_ = 0;
   int read_ = 0;  ///< images gone past, damaged ones included
   int first_slot_ = 0;
   std::optional<Frame> waiting_;

@@ -25,6 +25,8 @@ class PacedSource final : public FrameSource {
     return frame;
   }
 
+  [[nodiscard]] SourceReport report() const override { return recording_->report(); }
+
   [[nodiscard]] std::optional<int> frame_count() const override {
     return recording_->frame_count();
   }

@@ -4,6 +4,7 @@
 #include "core/concurrency/bounded_queue.h"
 
 #include <exception>
+#include <mutex>
 #include <thread>
 #include <utility>
 #include <variant>
@@ -37,12 +38,25 @@ class ReadAheadSource : public FrameSource {
 
   [[nodiscard]] std::optional<int> frame_count() const override { return frame_count_; }
 
+  [[nodiscard]] SourceReport report() const override {
+    const std::scoped_lock lock(report_mutex_);
+    return report_;
+  }
+
  private:
+  void note_report() {
+    SourceReport report = source_->report();
+    const std::scoped_lock lock(report_mutex_);
+    report_ = std::move(report);
+  }
+
   void read_all() {
     try {
       while (auto frame = source_->next()) {
+        note_report();
         if (!frames_.push(std::move(*frame))) return;
       }
+      note_report();
     } catch (...) {
       static_cast<void>(frames_.push(std::current_exception()));  // nobody listens any more
     }
@@ -51,6 +65,8 @@ class ReadAheadSource : public FrameSource {
 
   std::unique_ptr<FrameSource> source_;
   std::optional<int> frame_count_;
+  mutable std::mutex report_mutex_;
+  SourceReport report_;  ///< of the source, by the frame read last
   core::BoundedQueue<std::variant<Frame, std::exception_ptr>> frames_{kMostWaiting};
   std::jthread reader_;  ///< last: it uses all of the above
 };

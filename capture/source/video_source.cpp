@@ -3,37 +3,44 @@
 
 #include "capture/source/image_check.h"
 #include "capture/source/motion_jpeg_source.h"
+#include "capture/source/quarter_turn.h"
 #include "capture/source/read_ahead_source.h"
 #include "capture/source/recording_end.h"
+#include "capture/source/stated_rate.h"
+#include "capture/source/video_colour.h"
+#include "capture/source/video_decoder.h"
 #include "core/diagnostics/error.h"
 
-#include <opencv2/videoio.hpp>
+extern "C" {
+#include <libavutil/frame.h>
+}
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
 namespace sheen::capture {
 namespace {
 
-constexpr double kMaxFrames = 1e8;
 constexpr double kFallbackFps = 30;
+constexpr int kMaxSidePx = 1 << 15;
 
-bool is_usable_fps(double fps) {
-  return std::isfinite(fps) && fps > 0.01 && fps < 1e4;
-}
-
-/// Any codec, by FFmpeg through OpenCV.
+/// Any codec, by FFmpeg.
 class VideoSource : public FrameSource {
  public:
   VideoSource(const std::filesystem::path& path, const ImageSize& size, const FrameRange& range,
               std::optional<double> fps)
-      : path_(path), size_(size), range_(range), given_fps_(fps) {
-    open();
+      : path_(path),
+        size_(size),
+        range_(range),
+        decoder_(path),
+        file_fps_(decoder_.facts().fps.value_or(fps.value_or(kFallbackFps))),
+        promised_(decoder_.facts().frames),
+        rate_(fps) {
     check_range(path_, range_, promised_);
+    const ImageSize stated = decoder_.facts().size;
+    if (stated.width_px > 0) choose_orientation(stated);
     // Decode the first wanted frame now: faults show before long work starts.
-    skip_to_start();
     waiting_ = decode();
   }
 
@@ -47,83 +54,96 @@ class VideoSource : public FrameSource {
     return std::min(*promised_, range_.end.value_or(*promised_)) - range_.start;
   }
 
- private:
-  void open() {
-    if (!capture_.open(path_.string(), cv::CAP_FFMPEG)) {
-      throw core::bad_input(path_, "cannot be decoded as a video", "check that it is complete");
-    }
-    const double own_fps = capture_.get(cv::CAP_PROP_FPS);
-    file_fps_ = is_usable_fps(own_fps) ? own_fps : given_fps_.value_or(kFallbackFps);
-    const double count = capture_.get(cv::CAP_PROP_FRAME_COUNT);
-    if (count >= 1 && count < kMaxFrames) promised_ = static_cast<int>(count);
+  [[nodiscard]] SourceReport report() const override {
+    SourceReport report{decoder_.damaged(), colour_.notes()};
+    if (!turn_.note.empty()) report.notes.push_back(turn_.note);
+    if (auto disagreement = rate_.disagreement()) report.notes.push_back(*disagreement);
+    for (std::string& note : report.notes) note = path_.string() + ": " + note;
+    return report;
   }
 
-  void skip_to_start() {
-    while (decoded_ < range_.start) {
-      if (!capture_.grab()) throw early_end(path_, decoded_, promised_);
-      note_grabbed();
-    }
+ private:
+  void choose_orientation(const ImageSize& stored) {
+    turn_ = choose_turn(path_, stored, size_, decoder_.facts().orientation);
+    stored_ = stored;
   }
 
   std::optional<Frame> decode() {
     if (has_ended_ || (range_.end && decoded_ >= *range_.end)) return std::nullopt;
-    cv::Mat image;
-    if (!capture_.grab()) {
-      has_ended_ = true;
-      if (decoded_ == 0 || decoded_ == range_.start ||
-          is_short(promised_, decoded_, time_s_ * file_fps_)) {
-        throw early_end(path_, decoded_, promised_);
-      }
-      return std::nullopt;
+    while (decoder_.next()) {
+      const double own_time_s = decoder_.time_s();
+      const double since_last_s = decoded_ > 0 ? own_time_s - last_s_ : 0;
+      decoded_ = decoder_.index() + 1;
+      last_s_ = own_time_s;
+      if (range_.end && decoder_.index() >= *range_.end) break;
+      if (decoder_.facts().has_own_times) rate_.compare(decoder_.index(), own_time_s);
+      if (decoder_.index() < range_.start) continue;
+      return frame_of(decoder_.picture(), own_time_s, since_last_s);
     }
-    const int index = decoded_;
-    note_grabbed();
-    if (!capture_.retrieve(image) || image.type() != CV_8UC3) {
-      throw core::bad_input(path_, "frame " + std::to_string(index) + " cannot be decoded",
-                            "record or convert the video again");
+    has_ended_ = true;
+    const bool lacks_all = decoded_ <= range_.start;
+    if (range_.end && decoded_ >= *range_.end && !lacks_all) return std::nullopt;
+    if (lacks_all || is_short(promised_, decoded_, last_s_ * file_fps_)) {
+      throw early_end(path_, decoded_, promised_);
     }
-    check_image_size(path_, {image.cols, image.rows}, size_);
-    return Frame{std::move(image), given_fps_ ? index / *given_fps_ : time_s_, index};
+    return std::nullopt;
   }
 
-  void note_grabbed() {
-    const double position_s = capture_.get(cv::CAP_PROP_POS_MSEC) / 1000;
-    // Some containers carry no times; then the frames are evenly spaced.
-    if (decoded_ == 0) first_s_ = std::isfinite(position_s) ? position_s : 0;
-    const double since_first_s = position_s - first_s_;
-    const bool advances = std::isfinite(since_first_s) && since_first_s > time_s_;
-    time_s_ = decoded_ == 0 ? 0 : advances ? since_first_s : time_s_ + 1 / file_fps_;
-    ++decoded_;
+  Frame frame_of(const AVFrame& picture, double own_time_s, double since_last_s) {
+    const ImageSize stored{picture.width, picture.height};
+    if (!(stored == stored_)) choose_orientation(stored);
+    Frame frame;
+    std::string fault;
+    if (!colour_.convert(picture, frame.image, fault)) {
+      throw core::bad_input(path_, fault, "convert it to an ordinary 8-bit video (BT.709)");
+    }
+    if (turn_.turns) frame.image = turned(frame.image, decoder_.facts().orientation);
+    frame.index = decoder_.index();
+    frame.time_s = rate_.time_s(frame.index).value_or(own_time_s);
+    frame.spacing_s = rate_.spacing_s().value_or(since_last_s > 0 ? since_last_s : 1 / file_fps_);
+    return frame;
   }
 
   std::filesystem::path path_;
   ImageSize size_;
   FrameRange range_;
-  std::optional<double> given_fps_;
-  cv::VideoCapture capture_;
+  VideoDecoder decoder_;
   double file_fps_ = kFallbackFps;
   std::optional<int> promised_;  // frames the container states
-  int decoded_ = 0;
-  double first_s_ = 0;
-  double time_s_ = 0;
+  StatedRate rate_;
+  VideoColour colour_;
+  ImageSize stored_;
+  TurnChoice turn_;
+  int decoded_ = 0;  ///< frames gone past, damaged ones included
+  double last_s_ = 0;
   bool has_ended_ = false;
   std::optional<Frame> waiting_;
 };
 
-}  // namespace
-
-std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, const ImageSize& size,
-                                        const FrameRange& range, std::optional<double> fps) {
+void check_is_file(const std::filesystem::path& path) {
   std::error_code no_throw;
   if (!std::filesystem::is_regular_file(path, no_throw)) {
     throw core::bad_input(path, "there is no such video", "check the path in session.json");
   }
-  if (auto source = open_motion_jpeg(path, size, range, fps)) return source;
-  try {
-    return read_ahead(std::make_unique<VideoSource>(path, size, range, fps));
-  } catch (const cv::Exception&) {
+}
+
+}  // namespace
+
+ImageSize stored_video_size(const std::filesystem::path& path) {
+  check_is_file(path);
+  const ImageSize size = VideoDecoder(path).facts().size;
+  if (size.width_px < 1 || size.height_px < 1 || size.width_px > kMaxSidePx ||
+      size.height_px > kMaxSidePx) {
     throw core::bad_input(path, "cannot be decoded as a video", "check that it is complete");
   }
+  return size;
+}
+
+std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, const ImageSize& size,
+                                        const FrameRange& range, std::optional<double> fps) {
+  check_is_file(path);
+  if (auto source = open_motion_jpeg(path, size, range, fps)) return source;
+  return read_ahead(std::make_unique<VideoSource>(path, size, range, fps));
 }
 
 }  // namespace sheen::capture

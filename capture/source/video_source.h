@@ -10,14 +10,20 @@
 
 namespace sheen::capture {
 
-/// Frames of a video file in BGR. Frames before the range are decoded and dropped, since seeking
-/// lands on key frames in most files. Times come from the file, or from `fps` where it is given.
-/// Throws core::Error (bad_input): missing file, nothing to decode, another image size (found at
-/// the first frame, before this returns), and from `next()` when decoding stops early: more than
-/// one frame short of the number the container states and more than two frame times short of its
-/// length (containers over-state by a frame, and state frames of even spacing where the recording
-/// has gaps, so being short by one of the two only is no fault).
+/// Frames of a video file in BGR, sRGB colours (capture/source/video_colour.h), stored pixels:
+/// turned as the file asks only where the camera file is for the turned images
+/// (capture/source/quarter_turn.h). What an edit list hides is not there. Frames before the range
+/// are decoded and dropped, since seeking lands on key frames in most files. Times come from the
+/// file, or from `fps` where it is given. Damaged frames are left out and counted. Throws
+/// core::Error (bad_input): missing file, nothing to decode, another image size (found before this
+/// returns), and from `next()` when decoding stops early: more than one frame short of the number
+/// the container states and more than two frame times short of its length (containers over-state by
+/// a frame, and state frames of even spacing where the recording has gaps, so being short by one of
+/// the two only is no fault).
 std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, const ImageSize& size,
                                         const FrameRange& range, std::optional<double> fps);
+
+/// Size of a video's stored pixels. Throws core::Error (bad_input).
+ImageSize stored_video_size(const std::filesystem::path& path);
 
 }  // namespace sheen::capture

@@ -50,7 +50,9 @@ void observe_frames(const pipeline::FrameChoice& choice, int threads, pipeline::
     samples += observation.samples.size();
   });
   scene.finish(sink);
-  pipeline::check_something_was_seen(session, frames, samples);
+  const capture::SourceReport recording = poses.report();
+  for (const std::string& note : recording.notes) sink.note(note);
+  pipeline::check_something_was_seen(session, choice, frames, samples);
 }
 
 void check_views_are_held_out(const Observations& observations) {

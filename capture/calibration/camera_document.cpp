@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: MIT
+#include "capture/calibration/camera_document.h"
+
+#include "core/diagnostics/error.h"
+#include "core/text/number.h"
+
+#include <nlohmann/json.hpp>
+#include <pugixml.hpp>
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace sheen::capture {
+namespace {
+
+constexpr std::size_t kMostWords = 64;  // of one key: a matrix of 3 x 4 and coefficients are fewer
+constexpr int kDeepest = 60;            // brackets; parsers recurse
+constexpr const char* kRemedy = "see docs/input.md for the camera files that are read";
+
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& fault,
+                       const std::string& remedy = kRemedy) {
+  throw core::bad_input(path, fault, remedy);
+}
+
+[[noreturn]] void fail_unknown(const std::filesystem::path& path) {
+  fail(path,
+       "is neither in OpenCV's FileStorage form nor a camera file of ROS, Kalibr, Agisoft, COLMAP "
+       "or "
+       "nerfstudio");
+}
+
+/// Refuses text whose brackets are nested deeper than any camera file's, before a parser sees it.
+void check_nesting(const std::string& text, const std::filesystem::path& path) {
+  int depth = 0;
+  for (const char c : text) {
+    if (c == '[' || c == '{') ++depth;
+    if (c == ']' || c == '}') depth = std::max(0, depth - 1);
+    if (depth > kDeepest) fail(path, "is nested too deeply for a camera file");
+  }
+}
+
+void append_words(const std::string& text, std::vector<std::string>& words) {
+  std::istringstream stream(text);
+  for (std::string word; words.size() <= kMostWords && stream >> word;) words.push_back(word);
+}
+
+// YAML: keys with a scalar, a list, a list of lists, or a matrix with its numbers under "data".
+
+void append_scalars(const YAML::Node& node, std::vector<std::string>& words, int depth = 0) {
+  if (words.size() > kMostWords || depth > 4) return;
+  if (node.IsScalar()) words.push_back(node.Scalar());
+  if (!node.IsSequence()) return;
+  for (const YAML::Node& entry : node) {
+    if (words.size() > kMostWords) return;
+    append_scalars(entry, words, depth + 1);
+  }
+}
+
+CameraKeys yaml_keys(const YAML::Node& map) {
+  CameraKeys keys;
+  for (const auto& member : map) {
+    if (!member.first.IsScalar()) continue;
+    const YAML::Node& value = member.second;
+    std::vector<std::string> words;
+    append_scalars(value.IsMap() ? value["data"] : value, words);
+    if (words.size() <= kMostWords) keys[member.first.Scalar()] = std::move(words);
+  }
+  return keys;
+}
+
+bool is_kalibr_camera(const std::string& key) {
+  return key.size() > 3 && key.starts_with("cam") &&
+         std::all_of(key.begin() + 3, key.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// The text without OpenCV's first line, which is no YAML for anybody else.
+std::string without_directive(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t\n");
+  if (begin == std::string::npos || text.compare(begin, 5, "%YAML") != 0) return text;
+  return text.substr(std::min(text.find('\n', begin), text.size()));
+}
+
+CameraKeys read_yaml(const std::string& text, const std::filesystem::path& path) {
+  YAML::Node root;
+  try {
+    root = YAML::Load(without_directive(text));
+  } catch (const YAML::Exception&) {
+    fail_unknown(path);
+  }
+  if (!root.IsMap()) fail_unknown(path);
+  std::vector<std::string> cameras;
+  for (const auto& member : root) {
+    if (member.first.IsScalar() && is_kalibr_camera(member.first.Scalar()) &&
+        member.second.IsMap()) {
+      cameras.push_back(member.first.Scalar());
+    }
+  }
+  if (cameras.size() > 1) {
+    fail(path,
+         "holds " + std::to_string(cameras.size()) + " cameras (" + cameras[0] + ", " + cameras[1] +
+             (cameras.size() > 2 ? ", ..." : "") + ")",
+         "keep the one that took the images");
+  }
+  return yaml_keys(cameras.empty() ? root : root[cameras[0]]);
+}
+
+void append_scalars(const nlohmann::json& node, std::vector<std::string>& words, int depth = 0) {
+  if (words.size() > kMostWords || depth > 4) return;
+  if (node.is_string()) words.push_back(node.get<std::string>());
+  if (node.is_number() || node.is_boolean()) words.push_back(node.dump());
+  if (!node.is_array()) return;
+  for (const nlohmann::json& entry : node) {
+    if (words.size() > kMostWords) return;
+    append_scalars(entry, words, depth + 1);
+  }
+}
+
+CameraKeys read_json(const std::string& text, const std::filesystem::path& path) {
+  const auto root = nlohmann::json::parse(text, nullptr, false);
+  if (!root.is_object()) fail_unknown(path);
+  CameraKeys keys;
+  for (const auto& [key, value] : root.items()) {
+    std::vector<std::string> words;
+    append_scalars(value.is_object() && value.contains("data") ? value["data"] : value, words);
+    if (words.size() <= kMostWords) keys[key] = std::move(words);
+  }
+  return keys;
+}
+
+// XML.
+
+CameraKeys xml_keys(const pugi::xml_node& parent) {
+  CameraKeys keys;
+  for (const pugi::xml_node& child : parent.children()) {
+    std::vector<std::string> words;
+    const pugi::xml_node data = child.child("data");
+    append_words(data ? data.child_value() : child.child_value(), words);
+    if (words.size() <= kMostWords) keys[child.name()] = std::move(words);
+  }
+  // Agisoft's projects write the size as attributes.
+  if (const pugi::xml_node resolution = parent.child("resolution")) {
+    keys["width"] = {resolution.attribute("width").value()};
+    keys["height"] = {resolution.attribute("height").value()};
+  }
+  if (const pugi::xml_attribute type = parent.attribute("type"))
+    keys["projection"] = {type.value()};
+  return keys;
+}
+
+/// The calibration of the only sensor that a project has adjusted.
+pugi::xml_node project_calibration(const pugi::xml_document& document,
+                                   const std::filesystem::path& path) {
+  std::vector<pugi::xml_node> found;
+  for (const pugi::xpath_node& node :
+       document.select_nodes("/document/chunk/sensors/sensor/calibration[@class='adjusted']")) {
+    found.push_back(node.node());
+  }
+  if (found.empty())
+    fail(path, "is an Agisoft project without an adjusted calibration",
+         "align the photos, or export the calibration of the camera");
+  if (found.size() > 1) {
+    fail(path, "is an Agisoft project of " + std::to_string(found.size()) + " sensors",
+         "export the calibration of the camera that took the images");
+  }
+  return found.front();
+}
+
+CameraDocument read_xml(const std::string& text, const std::filesystem::path& path) {
+  pugi::xml_document document;
+  if (!document.load_buffer(text.data(), text.size())) fail_unknown(path);
+  if (const pugi::xml_node storage = document.child("opencv_storage")) {
+    return {xml_keys(storage), false, {}};
+  }
+  if (const pugi::xml_node calibration = document.child("calibration")) {
+    return {xml_keys(calibration), true, {}};
+  }
+  if (document.child("document")) return {xml_keys(project_calibration(document, path)), true, {}};
+  fail_unknown(path);
+}
+
+// COLMAP: CAMERA_ID MODEL WIDTH HEIGHT PARAMS..., pixels counted from the corner of the first one.
+
+std::optional<LensRecord> colmap_camera(const std::vector<std::string>& words,
+                                        const std::filesystem::path& path) {
+  if (words.size() < 5 || !core::parse_whole_number(words[0]) ||
+      !core::parse_whole_number(words[2]) || !core::parse_whole_number(words[3])) {
+    return std::nullopt;
+  }
+  LensRecord record;
+  record.width_px = static_cast<int>(std::min(*core::parse_whole_number(words[2]), 1LL << 20));
+  record.height_px = static_cast<int>(std::min(*core::parse_whole_number(words[3]), 1LL << 20));
+  std::vector<double> p;
+  for (std::size_t i = 4; i < words.size(); ++i) {
+    const auto number = core::parse_number(words[i]);
+    if (!number) return std::nullopt;
+    p.push_back(*number);
+  }
+  const std::string& model = words[1];
+  const bool has_one_focal = model == "SIMPLE_PINHOLE" || model == "SIMPLE_RADIAL" ||
+                             model == "RADIAL" || model == "SIMPLE_RADIAL_FISHEYE" ||
+                             model == "RADIAL_FISHEYE";
+  if (has_one_focal) p.insert(p.begin(), p[0]);
+  if (p.size() < 4) return std::nullopt;
+  record.focal_px = {p[0], p[1]};
+  record.principal_px = {p[2] - 0.5, p[3] - 0.5};
+  std::vector<double> k(p.begin() + 4, p.end());
+  if (model == "FULL_OPENCV" && k.size() == 8) {
+    record.distortion = k;
+  } else if (model == "OPENCV" || model == "OPENCV_FISHEYE" || model.ends_with("PINHOLE")) {
+    record.distortion = k;
+  } else if (model == "SIMPLE_RADIAL" || model == "RADIAL") {
+    k.resize(4, 0);
+    record.distortion = k;
+  } else {
+    fail(path, "is of the camera model " + core::quotable(model) + ", which is not read",
+         "use OPENCV or another of COLMAP's models with radial and tangential distortion");
+  }
+  if (model == "OPENCV_FISHEYE") record.kind = LensKind::equidistant;
+  return record;
+}
+
+std::optional<LensRecord> read_colmap(const std::string& text, const std::filesystem::path& path) {
+  std::istringstream lines(text);
+  std::optional<LensRecord> found;
+  int cameras = 0;
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string> words;
+    append_words(line, words);
+    if (words.empty() || words[0].starts_with('#')) continue;
+    auto camera = colmap_camera(words, path);
+    if (!camera) return std::nullopt;
+    found = std::move(camera);
+    ++cameras;
+  }
+  if (cameras > 1) {
+    fail(path, "holds " + std::to_string(cameras) + " cameras",
+         "keep the one that took the images");
+  }
+  return found;
+}
+
+}  // namespace
+
+CameraDocument parse_camera_document(const std::string& text, const std::filesystem::path& path) {
+  const std::size_t begin = text.find_first_not_of(" \t\n");
+  if (begin == std::string::npos) fail_unknown(path);
+  if (text[begin] == '<') return read_xml(text, path);
+  check_nesting(text, path);
+  if (text[begin] == '{') return {read_json(text, path), false, {}};
+  if (text[begin] != '%') {
+    if (auto record = read_colmap(text, path)) return {{}, false, std::move(record)};
+  }
+  return {read_yaml(text, path), false, {}};
+}
+
+}  // namespace sheen::capture

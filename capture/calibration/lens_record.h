@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "core/geometry/camera.h"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace sheen::capture {
+
+/// How a lens bends rays, as camera files name it.
+enum class LensKind {
+  radial,      ///< OpenCV's: k1 k2 p1 p2 k3 k4 k5 k6 (plumb_bob, radtan, rational_polynomial)
+  equidistant  ///< fisheye: k1 k2 k3 k4 of the angle from the axis
+};
+
+/// What a camera file says, in OpenCV's conventions: pixel (0, 0) is the centre of the first pixel.
+struct LensRecord {
+  int width_px = 0, height_px = 0;
+  Eigen::Vector2d focal_px{0, 0}, principal_px{0, 0};
+  LensKind kind = LensKind::radial;
+  std::vector<double> distortion;
+};
+
+/// The values of a camera file by the names of their keys, whatever its form: words as written.
+using CameraKeys = std::map<std::string, std::vector<std::string>>;
+
+/// A camera from a record that is believable: image size, focal lengths, principal point,
+/// distortion that does not fold the image. The one place where a kind of lens becomes a camera.
+/// Throws core::Error (bad_input), `path` is for messages.
+core::CameraModel camera_of(const LensRecord& record, const std::filesystem::path& path);
+
+}  // namespace sheen::capture

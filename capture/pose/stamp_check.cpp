@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "capture/pose/stamp_check.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace sheen::capture {
+namespace {
+
+constexpr double kEpoch_s = 1e8;  // three years: no recording lasts as long
+
+/// A clock that counts from 1970, by the size of its numbers.
+struct EpochUnit {
+  double least;
+  const char* name;
+  const char* divide;
+};
+constexpr std::array<EpochUnit, 4> kEpochUnits{{{1e17, "nanoseconds", " and divide by 1000000000"},
+                                                {1e14, "microseconds", " and divide by 1000000"},
+                                                {1e11, "milliseconds", " and divide by 1000"},
+                                                {kEpoch_s, "seconds", ""}}};
+
+std::string range_text(double first, double last) {
+  const bool is_whole = first == std::floor(first) && last == std::floor(last);
+  return is_whole ? fmt::format("{:.0f} to {:.0f}", first, last)
+                  : fmt::format("{:.6f} to {:.6f}", first, last);
+}
+
+std::string frames_text(const FrameSpan& frames, Stamps stamps) {
+  if (stamps == Stamps::indices) {
+    return fmt::format("the frames from {} to {}", frames.first_index, frames.last_index);
+  }
+  return fmt::format("the frames from {:.6g} to {:.6g} s", frames.first_s, frames.last_s);
+}
+
+}  // namespace
+
+StampFault unmatched_stamps(const Trajectory& trajectory, const FrameSpan& frames) {
+  const auto& entries = trajectory.entries();
+  if (entries.empty()) return {"holds no pose", "write one line for every frame"};
+  const double first = entries.front().stamp, last = entries.back().stamp;
+  const Stamps kind = trajectory.stamps();
+  const std::string ranges =
+      fmt::format("its stamps run from {}{}, {}", range_text(first, last),
+                  kind == Stamps::seconds ? " s" : "", frames_text(frames, kind));
+  for (const EpochUnit& unit : kEpochUnits) {
+    if (first < unit.least) continue;
+    return {ranges + fmt::format(": they count {} since 1970", unit.name),
+            fmt::format("seconds count from the first frame: subtract the first stamp{} and write "
+                        "decimals",
+                        unit.divide)};
+  }
+  if (kind == Stamps::indices) {
+    const double seconds = frames.last_s - frames.first_s;
+    const bool are_milliseconds = last > frames.last_index && last <= 1100 * seconds + 1000;
+    return {ranges,
+            are_milliseconds
+                ? "whole numbers are frame indices from 0; are they milliseconds? write "
+                  "seconds with decimals"
+                : "whole numbers are frame indices from 0; write seconds with decimals, such "
+                  "as 1.000"};
+  }
+  if (first > frames.last_s || last < frames.first_s) {
+    return {ranges, "seconds count from the first frame: shift the stamps"};
+  }
+  return {ranges + ", and none lies within half a frame of a frame's time",
+          "check \"fps\" in session.json against the clock of the poses"};
+}
+
+std::optional<StampFault> shifted_stamps(const Trajectory& trajectory, int frames) {
+  const auto& entries = trajectory.entries();
+  if (trajectory.stamps() != Stamps::indices || frames < 2) return std::nullopt;
+  if (static_cast<int>(entries.size()) != frames || entries.front().stamp != 1 ||
+      entries.back().stamp != frames) {
+    return std::nullopt;
+  }
+  return StampFault{
+      fmt::format("its stamps count from 1 to {}, the frames from 0 to {}", frames, frames - 1),
+      "frames count from 0: take one off every stamp"};
+}
+
+}  // namespace sheen::capture

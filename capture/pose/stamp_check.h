@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/pose/trajectory.h"
+
+#include <optional>
+#include <string>
+
+namespace sheen::capture {
+
+/// The frames that poses were looked up for.
+struct FrameSpan {
+  int count = 0;
+  int first_index = 0, last_index = 0;
+  double first_s = 0, last_s = 0;
+};
+
+/// What is wrong with stamps, and what to do.
+struct StampFault {
+  std::string fault;
+  std::string remedy;
+};
+
+/// Why no frame of a recording has a pose in its file: stamps of another clock, unit or count.
+StampFault unmatched_stamps(const Trajectory& trajectory, const FrameSpan& frames);
+
+/// Stamps that name the wrong frames although they match: indices that count from 1 for a recording
+/// of as many frames, which count from 0. `frames` is all of the recording.
+std::optional<StampFault> shifted_stamps(const Trajectory& trajectory, int frames);
+
+}  // namespace sheen::capture

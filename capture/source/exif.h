@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace sheen::capture {
+
+/// The few EXIF facts that change what a picture means.
+struct ExifFacts {
+  int orientation = 1;        ///< 1 to 8, as TIFF counts
+  bool is_adobe_rgb = false;  ///< interoperability index R03, or colour space 2
+};
+
+/// Reads a TIFF structure, which EXIF is and TIFF files are. Whatever cannot be read is passed
+/// over.
+ExifFacts read_exif(std::span<const std::uint8_t> tiff);
+
+/// Bytes of the ICC profile of a TIFF file; empty where there is none.
+std::span<const std::uint8_t> tiff_profile(std::span<const std::uint8_t> tiff);
+
+}  // namespace sheen::capture

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/source/frame_range.h"
+#include "capture/source/quarter_turn.h"
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace sheen::capture {
+
+/// What the bytes of a picture say about it, whatever its name.
+enum class ImageKind { jpeg, png, tiff, bmp, webp, heif, avif, jpeg_xl, gif, raw, unknown };
+
+struct ImageFacts {
+  ImageKind kind = ImageKind::unknown;
+  std::optional<ImageSize> size;      ///< of JPEG and PNG: stored pixels
+  int channels = 0;                   ///< of JPEG: 1, 3 or 4; else 0
+  Orientation orientation;            ///< EXIF
+  std::vector<std::uint8_t> profile;  ///< ICC profile; empty where there is none
+  bool is_adobe_rgb = false;          ///< EXIF says so, as cameras do without a profile
+  std::optional<double> gamma;        ///< of PNG, where nothing else says what its colours are
+};
+
+/// Reads headers only, and believes no length beyond the bytes.
+ImageFacts read_image_facts(std::span<const std::uint8_t> bytes);
+
+/// "HEIC" and what to do about it, for pictures of kinds that are not read; nothing for the others.
+struct UnreadableKind {
+  std::string name;
+  std::string remedy;
+};
+std::optional<UnreadableKind> unreadable_kind(ImageKind kind);
+
+/// The same by the ending of a name, for files nobody wants to open: .heic, .cr2, .dng, ...
+std::optional<UnreadableKind> unreadable_ending(const std::filesystem::path& path);
+
+}  // namespace sheen::capture

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#include "capture/source/still_reader.h"
+
+#include "capture/files/file_handle.h"
+#include "capture/source/jpeg_decoder.h"
+#include "core/diagnostics/error.h"
+
+#include <fmt/format.h>
+#include <opencv2/imgcodecs.hpp>
+
+#include <cmath>
+
+namespace sheen::capture {
+namespace {
+
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
+constexpr int kMostSide_px = 1 << 15;
+
+core::Error unreadable(const std::filesystem::path& path, const std::string& fault) {
+  return core::bad_input(path, fault, "check that it is complete, or leave it out");
+}
+
+std::vector<std::uint8_t> all_bytes(const std::filesystem::path& path) {
+  const FileHandle file = FileHandle::open_to_read(path);
+  const std::uint64_t size = file.size();
+  if (size == 0) throw unreadable(path, "is empty");
+  if (size > kMostBytes) throw unreadable(path, "is larger than a picture can be");
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
+  if (file.read_at(0, bytes) != bytes.size()) throw unreadable(path, "cannot be read to its end");
+  return bytes;
+}
+
+/// Refuses what the headers show already: before memory is asked for.
+void check_headers(const std::filesystem::path& path, const ImageFacts& facts) {
+  if (const auto kind = unreadable_kind(facts.kind)) {
+    throw core::bad_input(path, "is " + kind->name + ", which is not read", kind->remedy);
+  }
+  if (facts.kind == ImageKind::jpeg && facts.channels == 4) {
+    throw core::bad_input(path, "has CMYK colours, as for print", "convert it to RGB");
+  }
+  if (facts.size && (facts.size->width_px < 1 || facts.size->height_px < 1 ||
+                     facts.size->width_px > kMostSide_px || facts.size->height_px > kMostSide_px)) {
+    throw unreadable(path, "cannot be read as an image");
+  }
+}
+
+cv::Mat decoded(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes,
+                const ImageFacts& facts) {
+  cv::Mat image;
+  if (facts.kind == ImageKind::jpeg && facts.size) {
+    // OpenCV would fill the missing half of a picture with grey and say nothing.
+    if (!decode_jpeg(bytes, *facts.size, image)) {
+      throw unreadable(path, "cannot be read as an image: it is cut short or damaged");
+    }
+    return image;
+  }
+  try {
+    image = cv::imdecode(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+  } catch (const cv::Exception&) {
+    image.release();  // OpenCV throws for absurd sizes and returns nothing for other faults
+  }
+  if (image.empty()) throw unreadable(path, "cannot be read as an image");
+  return image;
+}
+
+}  // namespace
+
+cv::Mat StillReader::read(const std::filesystem::path& path, std::optional<ImageSize> expected) {
+  std::error_code no_throw;
+  if (!std::filesystem::exists(path, no_throw)) {
+    throw core::bad_input(path, "there is no such image", "check the path");
+  }
+  const std::vector<std::uint8_t> bytes = all_bytes(path);
+  const ImageFacts facts = read_image_facts(bytes);
+  check_headers(path, facts);
+
+  // Sizes first: they are told by the headers of most kinds, before memory is asked for.
+  const auto choose = [&](const ImageSize& stored) {
+    if (!expected && !bound_) bound_ = stored;
+    return choose_turn(path, stored, expected.value_or(bound_.value_or(stored)), facts.orientation);
+  };
+  if (facts.size) static_cast<void>(choose(*facts.size));
+  cv::Mat image = decoded(path, bytes, facts);
+  const TurnChoice turn = choose({image.cols, image.rows});
+  if (turn.turns) image = turned(image, facts.orientation);
+  if (!turn.note.empty()) note(path, turn.note);
+  convert_colours(path, facts, image);
+  return image;
+}
+
+void StillReader::convert_colours(const std::filesystem::path& path, const ImageFacts& facts,
+                                  cv::Mat& bgr) {
+  const ColourProfile* profile = nullptr;
+  if (!facts.profile.empty()) {
+    auto [entry, is_new] =
+        profiles_.try_emplace(std::string(facts.profile.begin(), facts.profile.end()));
+    if (is_new) {
+      ColourProfile read;
+      if (read.take_icc(facts.profile)) entry->second = std::move(read);
+    }
+    if (!entry->second) {
+      return note(path, "has a colour profile that cannot be read; its colours count as sRGB");
+    }
+    profile = &*entry->second;
+  } else if (facts.is_adobe_rgb) {
+    if (!adobe_rgb_) {
+      adobe_rgb_.emplace();
+      static_cast<void>(adobe_rgb_->take_adobe_rgb());
+    }
+    profile = &*adobe_rgb_;
+  } else if (facts.gamma && std::abs(*facts.gamma - 1 / 2.2) > 0.02) {
+    return note(path, fmt::format("states a gamma of {:.2f}, which is passed over; its colours "
+                                  "count as sRGB",
+                                  *facts.gamma));
+  }
+  if (profile == nullptr || profile->is_srgb()) return;
+  profile->convert(bgr);
+  note(path, "its colours were converted to sRGB from the profile " + profile->name());
+}
+
+void StillReader::note(const std::filesystem::path& path, const std::string& cause) {
+  Cause& known = causes_[cause];
+  if (known.count++ == 0) known.first = path.string();
+}
+
+std::vector<std::string> StillReader::notes() const {
+  std::vector<std::string> notes;
+  for (const auto& [cause, known] : causes_) {
+    notes.push_back(known.count == 1
+                        ? fmt::format("{}: {}", known.first, cause)
+                        : fmt::format("{} and {} more: {}", known.first, known.count - 1, cause));
+  }
+  return notes;
+}
+
+}  // namespace sheen::capture

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: MIT
+#include "capture/source/video_decoder.h"
+
+#include "core/diagnostics/error.h"
+
+extern "C" {
+#include <libavcodec/avcodec.h>
+#include <libavformat/avformat.h>
+#include <libavutil/display.h>
+}
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <set>
+#include <string>
+
+namespace sheen::capture {
+namespace {
+
+constexpr double kMostFrames = 1e8;
+constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
+constexpr std::size_t kMostPending = 256;  // packets whose picture is not out yet
+
+struct CloseInput {
+  void operator()(AVFormatContext* input) const { avformat_close_input(&input); }
+};
+struct FreeContext {
+  void operator()(AVCodecContext* context) const { avcodec_free_context(&context); }
+};
+struct FreeFrame {
+  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
+};
+struct FreePacket {
+  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
+};
+using Input = std::unique_ptr<AVFormatContext, CloseInput>;
+using Context = std::unique_ptr<AVCodecContext, FreeContext>;
+using FramePtr = std::unique_ptr<AVFrame, FreeFrame>;
+using Packet = std::unique_ptr<AVPacket, FreePacket>;
+
+core::Error undecodable(const std::filesystem::path& path) {
+  return core::bad_input(path, "cannot be decoded as a video", "check that it is complete");
+}
+
+Input open_input(const std::filesystem::path& path) {
+  // Faults of files are told by us, in one line.
+  av_log_set_level(AV_LOG_QUIET);
+  AVDictionary* options = nullptr;
+  av_dict_set(&options, "protocol_whitelist", "file", 0);
+  AVFormatContext* context = nullptr;
+  // With the protocol before it a colon in the name is a letter like any other.
+  const int status =
+      avformat_open_input(&context, ("file:" + path.string()).c_str(), nullptr, &options);
+  av_dict_free(&options);
+  if (status < 0) throw undecodable(path);
+  Input input(context);
+  if (avformat_find_stream_info(context, nullptr) < 0) throw undecodable(path);
+  return input;
+}
+
+std::optional<double> usable_rate(AVRational rate) {
+  const double fps = rate.den != 0 ? av_q2d(rate) : 0;
+  return std::isfinite(fps) && fps > 0.01 && fps < 1e4 ? std::optional(fps) : std::nullopt;
+}
+
+Orientation orientation_of(const AVStream& stream) {
+  std::size_t size = 0;
+  const auto* bytes = av_stream_get_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, &size);
+  Orientation orientation;
+  if (bytes == nullptr || size < 9 * sizeof(std::int32_t)) return orientation;
+  std::int32_t matrix[9];
+  std::memcpy(matrix, bytes, sizeof(matrix));
+  // A negative determinant mirrors. FFmpeg's flip takes a mirror out that comes after the turn; the
+  // turn the other way round, after the mirror, is the same.
+  const double determinant =
+      static_cast<double>(matrix[0]) * matrix[4] - static_cast<double>(matrix[1]) * matrix[3];
+  if (determinant < 0) {
+    orientation.is_mirrored = true;
+    av_display_matrix_flip(matrix, 1, 0);
+  }
+  const double counter_clockwise = av_display_rotation_get(matrix);
+  if (!std::isfinite(counter_clockwise)) return {};
+  const long quarters =
+      std::lround((orientation.is_mirrored ? counter_clockwise : -counter_clockwise) / 90);
+  orientation.clockwise_degrees = static_cast<int>(((quarters % 4) + 4) % 4) * 90;
+  return orientation;
+}
+
+/// Pictures that a player shows, as far as the container knows without decoding.
+std::optional<int> shown_pictures(const AVFormatContext& input, AVStream& stream,
+                                  std::optional<double> fps) {
+  double count = static_cast<double>(stream.nb_frames);
+  // MP4's index lists every picture, with marks on those that an edit list hides.
+  if (std::strstr(input.iformat->name, "mov") != nullptr) {
+    const int entries = avformat_index_get_entries_count(&stream);
+    int shown = 0;
+    for (int i = 0; i < entries; ++i) {
+      const AVIndexEntry* entry = avformat_index_get_entry(&stream, i);
+      shown += (entry->flags & AVINDEX_DISCARD_FRAME) == 0 ? 1 : 0;
+    }
+    if (entries > 0 && shown > 0) count = std::min(count > 0 ? count : shown, double(shown));
+  }
+  if (count <= 0 && fps) {
+    const double seconds = stream.duration != AV_NOPTS_VALUE
+                               ? static_cast<double>(stream.duration) * av_q2d(stream.time_base)
+                           : input.duration != AV_NOPTS_VALUE
+                               ? static_cast<double>(input.duration) / AV_TIME_BASE
+                               : 0;
+    count = std::floor(seconds * *fps + 0.5);
+  }
+  return count >= 1 && count < kMostFrames ? std::optional(static_cast<int>(count)) : std::nullopt;
+}
+
+}  // namespace
+
+struct VideoDecoder::Impl {
+  explicit Impl(const std::filesystem::path& video);
+
+  bool decode();
+  bool feed();
+  void note_packet();
+  void place_picture();
+  void fill_in_colours();
+
+  std::filesystem::path path;
+  Input input;
+  int stream_index = -1;
+  Context codec;
+  Packet packet{av_packet_alloc()};
+  FramePtr frame{av_frame_alloc()};
+  VideoFacts facts;
+  bool is_draining = false;
+  bool has_ended = false;
+  bool counts_packets = true;      ///< one packet is one picture
+  std::set<std::int64_t> pending;  ///< stamps of packets whose picture is not out yet
+  int pictures = 0;                ///< that came out or were lost
+  int damaged = 0;
+  int index = -1;
+  double first_s = 0;
+  double time_s = 0;
+};
+
+VideoDecoder::Impl::Impl(const std::filesystem::path& video)
+    : path(video), input(open_input(video)) {
+  const AVCodec* decoder = nullptr;
+  stream_index = av_find_best_stream(input.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
+  if (stream_index < 0 || decoder == nullptr || !packet || !frame) throw undecodable(path);
+  AVStream& stream = *input->streams[stream_index];
+  for (unsigned i = 0; i < input->nb_streams; ++i) {
+    if (static_cast<int>(i) != stream_index) input->streams[i]->discard = AVDISCARD_ALL;
+  }
+  codec.reset(avcodec_alloc_context3(decoder));
+  if (!codec || avcodec_parameters_to_context(codec.get(), stream.codecpar) < 0) {
+    throw undecodable(path);
+  }
+  codec->pkt_timebase = stream.time_base;
+  codec->max_pixels = kMostPixels;
+  codec->thread_count = 0;
+  if (avcodec_open2(codec.get(), decoder, nullptr) < 0) throw undecodable(path);
+  facts.size = {stream.codecpar->width, stream.codecpar->height};
+  facts.fps = usable_rate(stream.avg_frame_rate);
+  if (!facts.fps) facts.fps = usable_rate(stream.r_frame_rate);
+  facts.frames = shown_pictures(*input, stream, facts.fps);
+  facts.orientation = orientation_of(stream);
+  // AVI states a rate and counts; the other containers stamp every picture.
+  facts.has_own_times = std::strcmp(input->iformat->name, "avi") != 0;
+  const AVFieldOrder order = stream.codecpar->field_order;
+  counts_packets =
+      facts.has_own_times && (order == AV_FIELD_UNKNOWN || order == AV_FIELD_PROGRESSIVE);
+}
+
+void VideoDecoder::Impl::note_packet() {
+  if (packet->pts == AV_NOPTS_VALUE) counts_packets = false;
+  if (!counts_packets || (packet->flags & AV_PKT_FLAG_DISCARD) != 0 || packet->size == 0) return;
+  pending.insert(packet->pts);
+  if (pending.size() > kMostPending) counts_packets = false;
+}
+
+/// Gives the decoder the next packet, or the end; false when it wants nothing more.
+bool VideoDecoder::Impl::feed() {
+  if (is_draining) return false;
+  while (true) {
+    const int status = av_read_frame(input.get(), packet.get());
+    if (status == AVERROR(EAGAIN)) continue;
+    if (status < 0) {
+      is_draining = true;
+      return avcodec_send_packet(codec.get(), nullptr) >= 0;
+    }
+    const bool is_ours = packet->stream_index == stream_index;
+    if (is_ours) {
+      note_packet();
+      // What cannot be decoded gives no picture; the next one may.
+      static_cast<void>(avcodec_send_packet(codec.get(), packet.get()));
+    }
+    av_packet_unref(packet.get());
+    if (is_ours) return true;
+  }
+}
+
+void VideoDecoder::Impl::fill_in_colours() {
+  const AVCodecParameters& stated = *input->streams[stream_index]->codecpar;
+  if (frame->colorspace == AVCOL_SPC_UNSPECIFIED) frame->colorspace = stated.color_space;
+  if (frame->color_range == AVCOL_RANGE_UNSPECIFIED) frame->color_range = stated.color_range;
+  if (frame->color_primaries == AVCOL_PRI_UNSPECIFIED) {
+    frame->color_primaries = stated.color_primaries;
+  }
+  if (frame->color_trc == AVCOL_TRC_UNSPECIFIED) frame->color_trc = stated.color_trc;
+}
+
+/// Index and time. Packets before this picture whose own never came out were damaged ones.
+void VideoDecoder::Impl::place_picture() {
+  const std::int64_t stamp = frame->best_effort_timestamp;
+  int lost = 0;
+  if (counts_packets && stamp != AV_NOPTS_VALUE) {
+    while (!pending.empty() && *pending.begin() < stamp) {
+      pending.erase(pending.begin());
+      ++lost;
+    }
+    pending.erase(stamp);
+  }
+  const bool is_first = index < 0;
+  // What precedes the first picture cannot be decoded by anybody: leading pictures of a cut.
+  if (!is_first) {
+    pictures += lost;
+    damaged += lost;
+  }
+  index = pictures++;
+  const double stamp_s =
+      stamp == AV_NOPTS_VALUE
+          ? std::nan("")
+          : static_cast<double>(stamp) * av_q2d(input->streams[stream_index]->time_base);
+  if (is_first) {
+    first_s = std::isfinite(stamp_s) ? stamp_s : 0;
+    time_s = 0;
+    return;
+  }
+  // Some containers carry no times; then the frames are evenly spaced.
+  const double since_first_s = stamp_s - first_s;
+  const bool advances = std::isfinite(since_first_s) && since_first_s > time_s;
+  time_s = advances ? since_first_s : time_s + (1 + lost) / facts.fps.value_or(30);
+}
+
+bool VideoDecoder::Impl::decode() {
+  while (!has_ended) {
+    const int status = avcodec_receive_frame(codec.get(), frame.get());
+    if (status == 0) {
+      place_picture();
+      if ((frame->flags & AV_FRAME_FLAG_CORRUPT) != 0 || frame->decode_error_flags != 0) {
+        ++damaged;
+        continue;
+      }
+      fill_in_colours();
+      return true;
+    }
+    if (status == AVERROR_EOF || (status != AVERROR(EAGAIN) && is_draining)) {
+      has_ended = true;
+    } else if (!feed()) {
+      has_ended = true;
+    }
+  }
+  // Packets whose picture never came.
+  damaged += index < 0 ? 0 : static_cast<int>(pending.size());
+  pending.clear();
+  return false;
+}
+
+VideoDecoder::VideoDecoder(const std::filesystem::path& path)
+    : impl_(std::make_unique<Impl>(path)) {}
+
+VideoDecoder::~VideoDecoder() = default;
+VideoDecoder::VideoDecoder(VideoDecoder&&) noexcept = default;
+VideoDecoder& VideoDecoder::operator=(VideoDecoder&&) noexcept = default;
+
+const VideoFacts& VideoDecoder::facts() const {
+  return impl_->facts;
+}
+
+bool VideoDecoder::next() {
+  return impl_->decode();
+}
+
+const AVFrame& VideoDecoder::picture() const {
+  return *impl_->frame;
+}
+
+int VideoDecoder::index() const {
+  return impl_->index;
+}
+
+double VideoDecoder::time_s() const {
+  return impl_->time_s;
+}
+
+int VideoDecoder::damaged() const {
+  return impl_->damaged;
+}
+
+}  // namespace sheen::capture
