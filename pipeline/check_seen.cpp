@@ -73,7 +73,8 @@ capture::PoseRejection most_frequent(const FrameStatistics& frames) {
 }
 
 /// Why the vertices of the mesh gave no sample, by the reason that most of them have.
-core::Error unseen(const capture::Session& session, const FrameStatistics& frames) {
+core::Error unseen(const capture::Session& session, const FrameStatistics& frames,
+                   const SessionScene& scene) {
   const auto most = static_cast<core::VertexRejection>(
       std::max_element(frames.vertex_rejections.begin() + 1, frames.vertex_rejections.end()) -
       frames.vertex_rejections.begin());
@@ -87,8 +88,11 @@ core::Error unseen(const capture::Session& session, const FrameStatistics& frame
       return core::bad_input(session.mesh, fault + "all of it is hidden by itself",
                              "check that the surface is not within another");
     default:
-      return core::bad_input(session.mesh, fault + "it lies outside of the images",
-                             "check T_stage_object and that mesh and board are in metres");
+      return core::bad_input(session.mesh,
+                             fault + "it lies outside of the images; " + scene.description(),
+                             takes_poses_from_file(session, PoseSource::automatic)
+                                 ? "check T_stage_object, and that mesh and poses are in metres"
+                                 : "check T_stage_object, and that mesh and board are in metres");
   }
 }
 
@@ -108,10 +112,11 @@ void check_something_was_posed(const capture::Session& session, const FrameChoic
 }
 
 void check_something_was_seen(const capture::Session& session, const FrameChoice& choice,
-                              const FrameStatistics& frames, std::size_t samples) {
+                              const FrameStatistics& frames, std::size_t samples,
+                              const SessionScene& scene) {
   check_something_was_posed(session, choice, frames);
   if (samples == 0 && frames.frames_fitted + frames.frames_refused > 0) {
-    throw unseen(session, frames);
+    throw unseen(session, frames, scene);
   }
   if (samples == 0) {
     throw core::bad_input(session.mesh, "is not seen in any posed frame",

@@ -4,6 +4,7 @@
 #include "capture/session/session.h"
 #include "pipeline/frame_statistics.h"
 #include "pipeline/options.h"
+#include "pipeline/session_mesh.h"
 
 namespace sheen::pipeline {
 
@@ -11,7 +12,8 @@ namespace sheen::pipeline {
 /// patch was seen. Looks which file is at fault: for poses from a file its stamps, for tags a few
 /// of the session's images (capture/pose/board_diagnosis.h).
 void check_something_was_seen(const capture::Session& session, const FrameChoice& choice,
-                              const FrameStatistics& frames, std::size_t samples);
+                              const FrameStatistics& frames, std::size_t samples,
+                              const SessionScene& scene);
 
 /// The first half of it.
 void check_something_was_posed(const capture::Session& session, const FrameChoice& choice,

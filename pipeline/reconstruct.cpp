@@ -225,7 +225,7 @@ void Reconstruction::run(ProgressSink& sink, FrameListener* listener) {
   for (const std::string& note : recording.notes) sink.note(note);
   if (!frames.posed.empty()) impl_->scene.finish(sink);
   check_something_was_seen(impl_->session, impl_->options.frames, frames,
-                           impl_->fitter->statistics().samples);
+                           impl_->fitter->statistics().samples, impl_->scene);
   impl_->finish();
 }
 

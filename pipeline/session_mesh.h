@@ -57,6 +57,8 @@ class SessionScene {
   /// After the last view: throws core::Error (bad_input) when most cannot be, tells doubts.
   void finish(ProgressSink& sink) const;
 
+  [[nodiscard]] std::string description() const { return check_->description(); }
+
   /// All of it for views that are there.
   static void check(const capture::Session& session, const core::Mesh& mesh, PoseSource source,
                     const std::vector<PosedFrame>& views, ProgressSink& sink);

@@ -7,6 +7,7 @@
 #include "capture/calibration/camera_file.h"
 #include "capture/calibration/camera_images.h"
 #include "capture/calibration/coverage_image.h"
+#include "capture/pose/board_diagnosis.h"
 #include "capture/source/v4l2_camera.h"
 #include "core/diagnostics/error.h"
 #include "core/image/write_image.h"
@@ -72,9 +73,13 @@ capture::CalibrationTarget target_of(const CalibrateOptions& options) {
   return chessboard;
 }
 
+bool is_device(const CalibrateOptions& options) {
+  return options.source.string().starts_with("/dev/");
+}
+
 /// A device is watched for a while; anything else is read to its end.
 std::unique_ptr<capture::FrameSource> open_images(const CalibrateOptions& options) {
-  if (!options.source.string().starts_with("/dev/")) {
+  if (!is_device(options)) {
     return capture::open_calibration_images(options.source);
   }
   capture::V4l2CameraOptions camera;
@@ -178,7 +183,38 @@ nlohmann::ordered_json to_json(const capture::Calibration& found, int frames) {
           {"dropped", found.dropped}};
 }
 
-[[noreturn]] void refuse(const CalibrateOptions& options, const std::string& faults) {
+/// Looks for the fault at the board: throws core::Error (bad_input) where it finds one.
+void diagnose_board(const CalibrateOptions& options, const Candidates& candidates) {
+  if (options.board.empty() || is_device(options) || candidates.frames == 0) return;
+  constexpr int most = 8;
+  const int stride = std::max(1, candidates.frames / most);
+  const auto frames = capture::open_calibration_images(options.source);
+  std::optional<capture::BoardDiagnosis> diagnosis;
+  for (int i = 0; i < most * stride; ++i) {
+    const auto frame = frames->next();
+    if (!frame) break;
+    if (!diagnosis) {
+      diagnosis.emplace(capture::read_board(options.board),
+                        capture::plain_camera({frame->image.cols, frame->image.rows}));
+    }
+    if (i % stride == 0) diagnosis->look_at(*frame);
+  }
+  if (!diagnosis) return;
+  const bool has_found = candidates.views.size() > static_cast<std::size_t>(candidates.frames / 4);
+  const capture::PoseCause cause = diagnosis->cause(has_found ? capture::PoseRejection::reprojection
+                                                              : capture::PoseRejection::no_tags);
+  // Of a lens that is not known yet nothing can be said.
+  if (cause.suspect == capture::PoseSuspect::camera || !cause.is_sure) return;
+  throw core::bad_input(
+      cause.suspect == capture::PoseSuspect::board ? options.board : options.source,
+      fmt::format("{}; {} of {} images show the target", cause.fault, candidates.views.size(),
+                  candidates.frames),
+      cause.remedy);
+}
+
+[[noreturn]] void refuse(const CalibrateOptions& options, const Candidates& candidates,
+                         const std::string& faults) {
+  diagnose_board(options, candidates);
   throw core::bad_input(options.source, "cannot be calibrated from: " + faults,
                         "move the target through the whole image, near and far, tilted to all "
                         "sides by 30 degrees");
@@ -190,12 +226,13 @@ void run_calibrate(const CalibrateOptions& options, const CommandContext& contex
   const Candidates candidates = find_candidates(options, *finder, context);
   const auto found = calibrate(options, *finder, candidates);
   if (!found) {
-    refuse(options, fmt::format("{} of {} images show the target", candidates.views.size(),
-                                candidates.frames));
+    refuse(
+        options, candidates,
+        fmt::format("{} of {} images show the target", candidates.views.size(), candidates.frames));
   }
   if (!options.image.empty()) core::write_image(options.image, capture::draw_coverage(*found));
   if (const auto faults = capture::find_faults(*found, {}); !faults.empty()) {
-    refuse(options, fmt::format("{}", fmt::join(faults, "; ")));
+    refuse(options, candidates, fmt::format("{}", fmt::join(faults, "; ")));
   }
   capture::write_camera(options.output, found->camera);
   context.publish(to_json(*found, candidates.frames),

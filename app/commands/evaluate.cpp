@@ -3,6 +3,7 @@
 
 #include "app/commands/frame_options.h"
 #include "app/terminal_sink.h"
+#include "capture/plausibility/unit_guess.h"
 #include "core/diagnostics/error.h"
 #include "core/image/write_image.h"
 #include "core/mesh/bounds.h"
@@ -51,6 +52,31 @@ std::string to_text(const std::vector<std::string>& names,
   return text;
 }
 
+/// Refuses a model of another object or in other coordinates than the session's mesh: their boxes
+/// must be of about one size and meet.
+void check_same_object(const core::Mesh& model, const std::filesystem::path& model_path,
+                       const core::Mesh& mesh, const std::filesystem::path& mesh_path) {
+  const Eigen::AlignedBox3d model_box = core::file_bounds_of(model);
+  const Eigen::AlignedBox3d box = core::file_bounds_of(mesh);
+  const double ratio = model_box.diagonal().norm() / box.diagonal().norm();
+  if (ratio > 3 || ratio < 1.0 / 3) {
+    throw core::bad_input(
+        model_path,
+        fmt::format("is {} across, {} of the session {}",
+                    capture::length_text(model_box.diagonal().norm()),
+                    mesh_path.filename().string(), capture::length_text(box.diagonal().norm())),
+        "give a session of the same object in the same unit");
+  }
+  if (!model_box.intersects(box)) {
+    throw core::bad_input(
+        model_path,
+        fmt::format("lies {} from where {} of the session does",
+                    capture::length_text((model_box.center() - box.center()).norm()),
+                    mesh_path.filename().string()),
+        "give a session whose mesh has the same coordinates");
+  }
+}
+
 std::vector<Eigen::Isometry3d> poses_of(const std::vector<pipeline::PosedFrame>& views) {
   std::vector<Eigen::Isometry3d> poses;
   for (const pipeline::PosedFrame& view : views) poses.push_back(view.camera_from_board);
@@ -71,6 +97,9 @@ void run_evaluate(const EvaluateOptions& options, const CommandContext& context)
   pipeline::face_cameras(mesh, session, poses_of(views), sink);
 
   // Bring everything into the coordinates of the first model.
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    check_same_object(models[i].mesh, i == 0 ? options.model : options.beside, mesh, session.mesh);
+  }
   for (fitting::Model& model : models) core::move_offset(model.mesh, models.front().mesh.offset);
   core::move_offset(mesh, models.front().mesh.offset);
   session.take_offset(mesh.offset);

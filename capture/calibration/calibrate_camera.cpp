@@ -303,7 +303,10 @@ std::vector<std::string> find_faults(const Calibration& calibration,
   }
   const double focal_sigma = calibration.focal_sigma_px.cwiseQuotient(lens.focal_px).maxCoeff();
   if (!(focal_sigma <= limits.max_focal_sigma)) {
-    faults.push_back(fmt::format("the focal length is known to {:.1f} % only", 100 * focal_sigma));
+    faults.push_back(
+        std::isfinite(focal_sigma)
+            ? fmt::format("the focal length is known to {:.1f} % only", 100 * focal_sigma)
+            : std::string("the focal length is not known at all"));
   }
   const double principal_sigma = calibration.principal_sigma_px.maxCoeff() / side;
   if (!(principal_sigma <= limits.max_principal_sigma)) {

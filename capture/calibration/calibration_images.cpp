@@ -86,7 +86,12 @@ std::unique_ptr<FrameSource> open_calibration_images(const fs::path& source) {
   std::error_code no_throw;
   if (fs::is_regular_file(source, no_throw)) return open_whole_video(source);
   if (!fs::is_directory(source, no_throw)) {
-    throw core::bad_input(source, "there is no such video or folder", "check the path");
+    const std::string name = source.string();
+    const bool is_number =
+        !name.empty() && name.find_first_not_of("0123456789") == std::string::npos;
+    throw core::bad_input(
+        source, "there is no such video or folder",
+        is_number ? "check the path; a camera is named /dev/video" + name : "check the path");
   }
   if (fs::is_regular_file(source / "session.json", no_throw)) {
     for (const std::string_view name : kRecordings) {

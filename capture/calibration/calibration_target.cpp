@@ -17,16 +17,6 @@ constexpr std::size_t kMinTags = 3;  // twelve points: a pose and some to spare
 constexpr int kMinCorners = 3;
 constexpr double kTypicalFocal = 1.1;  // over the longer side: between a phone and a webcam
 
-/// Some lens, until one is known.
-core::CameraModel plain_camera(const cv::Mat& image) {
-  core::CameraModel::Intrinsics intrinsics;
-  intrinsics.width_px = image.cols;
-  intrinsics.height_px = image.rows;
-  intrinsics.focal_px.setConstant(kTypicalFocal * std::max(image.cols, image.rows));
-  intrinsics.principal_px << (image.cols - 1) / 2.0, (image.rows - 1) / 2.0;
-  return core::CameraModel(intrinsics);
-}
-
 class BoardFinder : public TargetFinder {
  public:
   explicit BoardFinder(const Board& board)
@@ -42,7 +32,7 @@ class BoardFinder : public TargetFinder {
       view.on_target.insert(view.on_target.end(), corners.begin(), corners.end());
       view.in_image.insert(view.in_image.end(), tag.corners_px.begin(), tag.corners_px.end());
     }
-    refine(grey, plain_camera(grey), view);
+    refine(grey, plain_camera({grey.cols, grey.rows}), view);
     return view;
   }
 
@@ -102,6 +92,15 @@ class ChessboardFinder : public TargetFinder {
 };
 
 }  // namespace
+
+core::CameraModel plain_camera(const ImageSize& size) {
+  core::CameraModel::Intrinsics intrinsics;
+  intrinsics.width_px = size.width_px;
+  intrinsics.height_px = size.height_px;
+  intrinsics.focal_px.setConstant(kTypicalFocal * std::max(size.width_px, size.height_px));
+  intrinsics.principal_px << (size.width_px - 1) / 2.0, (size.height_px - 1) / 2.0;
+  return core::CameraModel(intrinsics);
+}
 
 std::unique_ptr<TargetFinder> make_target_finder(const CalibrationTarget& target) {
   if (const auto* board = std::get_if<Board>(&target)) return std::make_unique<BoardFinder>(*board);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "capture/pose/board.h"
+#include "capture/source/frame_range.h"
 #include "core/geometry/camera.h"
 
 #include <Eigen/Core>
@@ -43,6 +44,9 @@ class TargetFinder {
   virtual void refine(const cv::Mat& grey, const core::CameraModel& camera,
                       TargetView& view) const = 0;
 };
+
+/// Some lens between a phone's and a webcam's, until one is known.
+core::CameraModel plain_camera(const ImageSize& size);
 
 /// Throws std::invalid_argument for a target that cannot be found: too few corners, unknown family.
 std::unique_ptr<TargetFinder> make_target_finder(const CalibrationTarget& target);

@@ -23,6 +23,8 @@ constexpr double kReach = 10;           // sizes of board and object between the
 constexpr double kFewPixels = 12;       // across the object: nothing to see
 constexpr double kDoubtfulPixels = 40;
 constexpr double kUsualPrint_m = 0.3;  // tags above it are no sheets of paper
+constexpr double kTinyObject_m = 0.005;
+constexpr double kNearestFocus_m = 0.06;  // nobody holds a camera nearer
 constexpr int kDirections = 128;
 constexpr std::size_t kMostVertices = 100'000;
 
@@ -71,8 +73,11 @@ std::vector<std::string> SceneCheck::check_sizes() const {
       fmt::format("a tag is {} wide and the object {}", length_text(tag_m), length_text(size_m_));
   const std::string question =
       unit_question(extent_m, 0.7 * size_m_, 8 * size_m_, "give board and mesh in metres");
-  if (tag_m > kTagPerObject * size_m_ && (tag_m > kUsualPrint_m || size_m_ < 0.005)) {
+  if (tag_m > kTagPerObject * size_m_ && tag_m > kUsualPrint_m) {
     throw core::bad_input(*session_.board, tag, question);
+  }
+  if (tag_m > kTagPerObject * size_m_ && size_m_ < kTinyObject_m) {
+    throw core::bad_input(session_.mesh, tag, "scale the mesh to its true size in metres");
   }
   for (std::string& doubt : check_tag_size(*board_, *session_.board)) {
     doubts.push_back(std::move(doubt));
@@ -159,12 +164,21 @@ void SceneCheck::refuse_small_object() const {
 
 void SceneCheck::refuse_inside() const {
   const double distance_m = median_distance_m();
+  const std::string fault = fmt::format(
+      "the camera stands inside of the object in {} of {} views: the object is {} "
+      "across and the camera {} from its middle",
+      inside_, views(), length_text(size_m_), length_text(distance_m));
+  if (distance_m < kNearestFocus_m) {
+    throw core::bad_input(board_ != nullptr && session_.board
+                              ? *session_.board
+                              : session_.poses.value_or(session_.folder),
+                          fault,
+                          board_ != nullptr ? "give the tags' sizes and places in metres"
+                                            : "give the poses in metres, in the scale of the mesh");
+  }
   throw core::bad_input(
-      session_.mesh,
-      fmt::format("the camera stands inside of the object in {} of {} views: the object is {} "
-                  "across and the camera {} from its middle",
-                  inside_, views(), length_text(size_m_), length_text(distance_m)),
-      unit_question(size_m_, 0.05 * distance_m, 1.6 * distance_m,
+      session_.mesh, fault,
+      unit_question(size_m_, 0.15 * distance_m, 1.6 * distance_m,
                     board_ != nullptr
                         ? "check T_stage_object, and that board and mesh are in metres"
                         : "check T_stage_object, and that poses and mesh are of one scale"));
@@ -174,6 +188,12 @@ void SceneCheck::check_views() const {
   if (views() == 0) return;
   if (2 * inside_ > views()) refuse_inside();
   if (median_width_px() < kFewPixels) refuse_small_object();
+}
+
+std::string SceneCheck::description() const {
+  if (views() == 0) return "the object is " + length_text(size_m_) + " across";
+  return fmt::format("the object is {} across and the camera {} from its middle",
+                     length_text(size_m_), length_text(median_distance_m()));
 }
 
 std::vector<std::string> SceneCheck::doubts() const {

@@ -35,6 +35,9 @@ class SceneCheck {
   /// object too small in the images to be an object at all. Nothing without views.
   void check_views() const;
 
+  /// How large the object is and from how far it was seen, for messages.
+  [[nodiscard]] std::string description() const;
+
   /// What is doubtful about the views, one line each.
   [[nodiscard]] std::vector<std::string> doubts() const;
 

@@ -9,7 +9,7 @@ namespace sheen::capture {
 
 std::string unit_guess(double value, double least_m, double most_m) {
   constexpr std::pair<const char*, double> units[] = {
-      {"millimetres", 0.001}, {"centimetres", 0.01}, {"inches", 0.0254}, {"kilometres", 1000}};
+      {"millimetres", 0.001}, {"centimetres", 0.01}, {"inches", 0.0254}};
   std::string guess;
   for (const auto& [name, metres] : units) {
     if (value * metres < least_m || value * metres > most_m) continue;
@@ -25,7 +25,8 @@ std::string unit_question(double value, double least_m, double most_m,
 }
 
 std::string length_text(double length_m) {
-  return fmt::format("{:.3g} m", length_m);
+  return length_m < 1e4 ? fmt::format("{:.3g} m", length_m)
+                        : fmt::format("{:.4g} km", length_m / 1000);
 }
 
 }  // namespace sheen::capture

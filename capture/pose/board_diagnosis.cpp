@@ -79,6 +79,8 @@ struct BoardDiagnosis::Impl {
   }
 
   void look_for_others(const cv::Mat& grey);
+  void look_from_behind(const cv::Mat& grey);
+  [[nodiscard]] std::size_t known_in(const cv::Mat& grey) const;
   void compare(const std::vector<TagDetection>& tags);
 
   Board board;
@@ -86,6 +88,7 @@ struct BoardDiagnosis::Impl {
   BoardTagFinder finder;
   bool is_flat = false;
   int images = 0, images_with_tags = 0;
+  int images_mirrored = 0, images_inverted = 0, images_repeated = 0;
   std::set<int> strangers;            ///< ids of the board's family that it does not hold
   std::map<std::string, int> others;  ///< images that show tags of another print
   std::vector<double> sizes;          ///< seen size over stated size, from the tags' distances
@@ -94,6 +97,23 @@ struct BoardDiagnosis::Impl {
   std::vector<double> layout_px;      ///< rms of a homography over all corners, in the raw image
   std::vector<double> straight_px;    ///< the same with the lens' distortion taken out
 };
+
+/// Tags of the board in another picture of the same frame.
+std::size_t BoardDiagnosis::Impl::known_in(const cv::Mat& grey) const {
+  const auto tags = drop_ambiguous(TagDetector(finder.family()).detect(grey));
+  return static_cast<std::size_t>(
+      std::count_if(tags.begin(), tags.end(),
+                    [this](const TagDetection& tag) { return board.tags.contains(tag.id); }));
+}
+
+/// Pictures of selfie cameras are mirrored, prints of some programs white on black.
+void BoardDiagnosis::Impl::look_from_behind(const cv::Mat& grey) {
+  cv::Mat other;
+  cv::flip(grey, other, 1);
+  images_mirrored += known_in(other) >= kFewTags ? 1 : 0;
+  cv::bitwise_not(grey, other);
+  images_inverted += known_in(other) >= kFewTags ? 1 : 0;
+}
 
 void BoardDiagnosis::Impl::look_for_others(const cv::Mat& grey) {
   for (const Print& print : kUsualPrints) {
@@ -162,7 +182,13 @@ void BoardDiagnosis::look_at(const Frame& frame) {
     if (!impl_->board.tags.contains(tag.id)) impl_->strangers.insert(tag.id);
   }
   const std::vector<TagDetection> known = impl_->finder.find();
-  if (known.empty() && all.size() < kFewTags) impl_->look_for_others(grey);
+  std::set<int> ids;
+  for (const TagDetection& tag : all) ids.insert(tag.id);
+  if (all.size() >= ids.size() + kFewTags) ++impl_->images_repeated;
+  if (known.empty() && ids.size() < kFewTags) {
+    impl_->look_from_behind(grey);
+    impl_->look_for_others(grey);
+  }
   if (!known.empty()) ++impl_->images_with_tags;
   if (known.size() >= 2 && impl_->is_flat) impl_->compare(known);
 }
@@ -176,6 +202,19 @@ PoseCause BoardDiagnosis::cause(PoseRejection refusal) const {
   if (refusal == PoseRejection::blur) {
     return {PoseSuspect::recording, "the images are smeared: the edges of the tags are too wide",
             "record more slowly or with shorter exposure, or raise --max-blur"};
+  }
+  if (seen.images_repeated > seen.images / 2) {
+    return {PoseSuspect::recording, "its images show the same tags more than once",
+            "print every id once, on one board"};
+  }
+  if (seen.images_with_tags == 0 && seen.images_mirrored > 0) {
+    return {PoseSuspect::recording,
+            "its images are mirrored: the board's tags are there in a mirror",
+            "switch the camera's mirroring off, or print the board the right way round"};
+  }
+  if (seen.images_with_tags == 0 && seen.images_inverted > 0) {
+    return {PoseSuspect::recording, "its images show the board's tags white on black",
+            "print them black on white"};
   }
   if (seen.images_with_tags == 0) {
     if (!seen.others.empty()) {
@@ -195,11 +234,12 @@ PoseCause BoardDiagnosis::cause(PoseRejection refusal) const {
     return {
         PoseSuspect::recording, fmt::format("its images show no tag of {}", family),
         "check that board.yaml describes the printed board and that the board is in view, sharp "
-        "and lit"};
+        "and lit",
+        false};
   }
   if (refusal == PoseRejection::too_few_tags || refusal == PoseRejection::no_tags) {
     return {PoseSuspect::recording, "its images show too few tags of the board at a time",
-            "keep more of the board in view, or lower --min-tags"};
+            "keep more of the board in view, or lower --min-tags", false};
   }
 
   // Tags are there but do not fit. Which file is it?
@@ -243,7 +283,7 @@ PoseCause BoardDiagnosis::cause(PoseRejection refusal) const {
   }
   return {PoseSuspect::board,
           "the tags do not lie in the images as it says, or camera.yaml is of another lens",
-          "check x, y and size of the tags, and that camera.yaml was made with this camera"};
+          "check x, y and size of the tags, and that camera.yaml was made with this camera", false};
 }
 
 }  // namespace sheen::capture

@@ -20,6 +20,7 @@ struct PoseCause {
   PoseSuspect suspect = PoseSuspect::recording;
   std::string fault;
   std::string remedy;
+  bool is_sure = true;  ///< false where the images tell no cause
 };
 
 /// Finds out why the tags of a recording give no pose, from a few of its images: another family or

@@ -39,6 +39,16 @@ V4l2Error no_camera(const std::filesystem::path& node, const std::string& fault)
           "\"sheen capture --list\" shows the cameras of this machine"};
 }
 
+/// What there is instead of a device of that name.
+std::string missing_device(const std::filesystem::path& node) {
+  const std::string name = node.string();
+  if (name.empty()) return "the name of the camera is empty";
+  if (name.find_first_not_of("0123456789") == std::string::npos) {
+    return "there is no such device; is /dev/video" + name + " meant?";
+  }
+  return "there is no such device";
+}
+
 }  // namespace
 
 V4l2Error::V4l2Error(Kind kind, const std::filesystem::path& device, const std::string& fault,
@@ -53,7 +63,8 @@ V4l2Error device_fault(const std::filesystem::path& node, const std::string& wha
 V4l2Device::V4l2Device(V4l2System& system, std::filesystem::path node)
     : system_(&system), node_(std::move(node)), descriptor_(system.open(node_)) {
   if (descriptor_ < 0) {
-    if (errno == ENOENT) throw no_camera(node_, "there is no such device");
+    if (errno == ENOENT) throw no_camera(node_, missing_device(node_));
+    if (errno == EISDIR) throw no_camera(node_, "this is a folder, not a video device");
     throw device_fault(node_, "opening", errno);
   }
   try {

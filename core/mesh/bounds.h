@@ -14,6 +14,13 @@ inline Eigen::AlignedBox3f bounds_of(const Mesh& mesh) {
   return box;
 }
 
+/// The same in the coordinates of the mesh's file.
+inline Eigen::AlignedBox3d file_bounds_of(const Mesh& mesh) {
+  Eigen::AlignedBox3d box = bounds_of(mesh).cast<double>();
+  if (!box.isEmpty()) box.translate(mesh.offset);
+  return box;
+}
+
 /// Lets a mesh be given with another offset: positions move by the difference, in double precision.
 inline void move_offset(Mesh& mesh, const Eigen::Vector3d& offset) {
   const Eigen::Vector3d shift = mesh.offset - offset;

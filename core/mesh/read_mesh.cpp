@@ -108,9 +108,9 @@ void judge_grid(const MeshFile& file, const Eigen::AlignedBox3d& box, const fs::
   char fault[160];
   std::snprintf(
       fault, sizeof(fault),
-      "stores positions in single precision %.4g m from the origin, where they stand on a "
-      "grid of %.2g mm",
-      farthest, 1000 * step);
+      "stores positions in single precision %.4g km from the origin, where they stand on a "
+      "grid of %.3g mm",
+      farthest / 1000, 1000 * step);
   const char* const remedy = "export it in double precision or move it to the origin first";
   if (step > kUselessGrid * size) throw bad_input(path, fault, remedy);
   notes.push_back(std::string(fault) + "; " + remedy);

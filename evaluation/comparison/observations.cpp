@@ -52,7 +52,7 @@ void observe_frames(const pipeline::FrameChoice& choice, int threads, pipeline::
   scene.finish(sink);
   const capture::SourceReport recording = poses.report();
   for (const std::string& note : recording.notes) sink.note(note);
-  pipeline::check_something_was_seen(session, choice, frames, samples);
+  pipeline::check_something_was_seen(session, choice, frames, samples, scene);
 }
 
 void check_views_are_held_out(const Observations& observations) {
