@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "capture/pose/joint_pose.h"
 
+#include "core/geometry/principal_axes.h"
+
 #include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <opencv2/calib3d.hpp>
 
 #include <algorithm>
@@ -140,13 +141,12 @@ void add_planar_starts(const Correspondences& matches, std::size_t first, std::s
     const cv::Point3d& p = matches.board[first + i];
     points.col(static_cast<Eigen::Index>(i)) = Eigen::Vector3d(p.x, p.y, p.z);
   }
-  const Eigen::Vector3d centre = points.rowwise().mean();
-  const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(points.colwise() - centre, Eigen::ComputeFullU);
-  if (svd.singularValues()[2] > 0.1 * svd.singularValues()[1]) return;
+  const core::PrincipalAxes plane = core::principal_axes(points);
+  if (plane.spread[2] > 0.1 * plane.spread[1]) return;
   Eigen::Isometry3d board_from_plane = Eigen::Isometry3d::Identity();
-  board_from_plane.linear() = svd.matrixU();
-  if (svd.matrixU().determinant() < 0) board_from_plane.linear().col(2) *= -1;
-  board_from_plane.translation() = centre;
+  board_from_plane.linear() = plane.axes;
+  if (plane.axes.determinant() < 0) board_from_plane.linear().col(2) *= -1;
+  board_from_plane.translation() = plane.mean;
 
   // Solve in that plane.
   std::vector<cv::Point3d> flat;
