@@ -38,7 +38,7 @@ template <typename Number>
 py::array view_of(const Number* numbers, std::vector<py::ssize_t> shape, const py::object& owner) {
   py::array_t<Number> array(std::move(shape), numbers, owner);
   array.attr("flags").attr("writeable") = false;
-  return std::move(array);
+  return py::array(array);
 }
 
 py::array vectors(const std::vector<Eigen::Vector3f>& list, const py::object& owner) {
@@ -54,11 +54,12 @@ const Model& model_in(const py::object& self) {
 py::dict coefficients(const py::object& self) {
   const Model& model = model_in(self);
   const auto part = std::make_shared<fitting::ModelPart>(
-      fitting::representation_named(model.light_field->representation()).encode(*model.light_field));
+      fitting::representation_named(model.light_field->representation())
+          .encode(*model.light_field));
   // Whoever holds an array holds what it points into.
   const py::capsule owner(new std::pair(part, model.owner), [](void* pair) {
-    delete static_cast<std::pair<std::shared_ptr<fitting::ModelPart>, std::shared_ptr<const void>>*>(
-        pair);
+    delete static_cast<
+        std::pair<std::shared_ptr<fitting::ModelPart>, std::shared_ptr<const void>>*>(pair);
   });
   py::dict arrays;
   for (const auto& [name, bytes] : part->arrays) {
@@ -198,14 +199,16 @@ void bind_light_field(py::class_<Model>& model) {
             py::array_t<float> array({static_cast<py::ssize_t>(colours.size()), py::ssize_t{3}});
             auto out = array.mutable_unchecked<2>();
             for (py::ssize_t i = 0; i < out.shape(0); ++i) {
-              for (py::ssize_t c = 0; c < 3; ++c) out(i, c) = colours[static_cast<std::size_t>(i)][c];
+              for (py::ssize_t c = 0; c < 3; ++c)
+                out(i, c) = colours[static_cast<std::size_t>(i)][c];
             }
             return array;
           },
           "float32 (V, 3): direction-independent colours, sRGB in [0, 1].")
-      .def_property_readonly("coefficients", &coefficients,
-                             "Arrays of the model file by name (docs/formats.md), 'coefficients' as "
-                             "float16, others as bytes. Not writeable.")
+      .def_property_readonly(
+          "coefficients", &coefficients,
+          "Arrays of the model file by name (docs/formats.md), 'coefficients' as "
+          "float16, others as bytes. Not writeable.")
       .def("evaluate", &evaluate, py::arg("patches"), py::arg("directions"),
            "Radiance of patches towards directions.\n\n"
            "patches: integers (N,), each below patch_count.\n"
@@ -229,7 +232,7 @@ void bind_model(py::module_& module) {
             counts["posed"] = self.frames->posed.size();
             counts["fitted"] = self.frames->frames_fitted;
             counts["held_out"] = self.frames->held_out.size();
-            return std::move(counts);
+            return py::object(counts);
           },
           "What became of the frames, by count; None for a model that was read from a file.")
       .def(
@@ -245,17 +248,18 @@ void bind_model(py::module_& module) {
         return model_of(std::make_shared<const fitting::Model>(fitting::read_model(path)));
       },
       py::arg("path"), "Reads a .glb that sheen wrote. Raises sheen.InputError for anything else.");
-  module.def("reconstruct", &reconstruct, py::arg("session"), py::kw_only(),
-             py::arg("representation") = "sparse", py::arg("options") = fitting::OptionValues{},
-             py::arg("start") = 0, py::arg("end") = py::none(), py::arg("hold_out") = 0,
-             py::arg("threads") = 1, py::arg("progress") = py::none(),
-             "Poses every frame of a session, fits a light field and returns the model.\n\n"
-             "representation, options: as on the command line, options as text by name without\n"
-             "dashes, e.g. representation='iwls', options={'fitter': 'batch'}.\n"
-             "start, end: frames [start, end); hold_out: every n-th frame stays out of the fit.\n"
-             "progress: called as progress(step, done, total), total 0 where it is not known; what\n"
-             "it raises ends the work and comes out here.\n"
-             "The result does not depend on threads. Other Python threads run meanwhile.");
+  module.def(
+      "reconstruct", &reconstruct, py::arg("session"), py::kw_only(),
+      py::arg("representation") = "sparse", py::arg("options") = fitting::OptionValues{},
+      py::arg("start") = 0, py::arg("end") = py::none(), py::arg("hold_out") = 0,
+      py::arg("threads") = 1, py::arg("progress") = py::none(),
+      "Poses every frame of a session, fits a light field and returns the model.\n\n"
+      "representation, options: as on the command line, options as text by name without\n"
+      "dashes, e.g. representation='iwls', options={'fitter': 'batch'}.\n"
+      "start, end: frames [start, end); hold_out: every n-th frame stays out of the fit.\n"
+      "progress: called as progress(step, done, total), total 0 where it is not known; what\n"
+      "it raises ends the work and comes out here.\n"
+      "The result does not depend on threads. Other Python threads run meanwhile.");
 }
 
 }  // namespace sheen::python

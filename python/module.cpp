@@ -8,7 +8,8 @@ PYBIND11_MODULE(sheen, module) {
       "    model = sheen.reconstruct(session)\n"
       "    colours = model.evaluate([0, 1], [[0, 0, 1], [0, 0, 1]])\n"
       "    model.write('model.glb')\n\n"
-      "Lengths are metres, colours display-referred sRGB in [0, 1], directions unit vectors in the\n"
+      "Lengths are metres, colours display-referred sRGB in [0, 1], directions unit vectors in "
+      "the\n"
       "object frame that point away from the surface.";
   sheen::python::bind_errors(module);
   sheen::python::bind_session(module);

@@ -29,7 +29,8 @@ void bind_session(py::module_& module) {
   py::class_<capture::Session>(module, "Session", "A recorded session: what session.json says.")
       .def_readonly("folder", &capture::Session::folder)
       .def_readonly("mesh", &capture::Session::mesh, "Path of the object's mesh.")
-      .def_readonly("warnings", &capture::Session::warnings, "What was not understood, a line each.")
+      .def_readonly("warnings", &capture::Session::warnings,
+                    "What was not understood, a line each.")
       .def_property_readonly(
           "image_size",
           [](const capture::Session& session) {

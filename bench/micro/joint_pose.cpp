@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One camera pose from the corners of many tags: the solver of capture/pose/joint_pose against Ceres
-// from the same kind of start. Both minimise the same reprojection with the same robust loss.
+// One camera pose from the corners of many tags: the solver of capture/pose/joint_pose against
+// Ceres from the same kind of start. Both minimise the same reprojection with the same robust loss.
 #include "capture/pose/joint_pose.h"
 
 #include "capture/pose/bundle_residuals.h"
@@ -72,8 +72,9 @@ Eigen::Isometry3d start_of(const Scene& scene) {
                       lens.principal_px.y(), 0, 0, 1);
   cv::Vec3d rotation;
   cv::Vec3d translation;
-  cv::solvePnP(points, pixels, K, std::vector<double>(lens.distortion.begin(), lens.distortion.end()),
-               rotation, translation, false, cv::SOLVEPNP_SQPNP);
+  cv::solvePnP(points, pixels, K,
+               std::vector<double>(lens.distortion.begin(), lens.distortion.end()), rotation,
+               translation, false, cv::SOLVEPNP_SQPNP);
   return to_isometry(Parameters{rotation[0], rotation[1], rotation[2], translation[0],
                                 translation[1], translation[2]});
 }
@@ -94,7 +95,8 @@ void BM_Ceres(benchmark::State& state) {
   for (auto _ : state) {
     Parameters pose = to_parameters(start_of(scene));
     std::vector<Parameters> tags;
-    for (const auto& [id, tag] : scene.board.tags) tags.push_back(to_parameters(tag.board_from_tag));
+    for (const auto& [id, tag] : scene.board.tags)
+      tags.push_back(to_parameters(tag.board_from_tag));
     ceres::Problem problem;
     for (const TagDetection& detection : scene.detections) {
       double* const tag = tags[static_cast<std::size_t>(detection.id)].data();

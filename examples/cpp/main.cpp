@@ -12,12 +12,13 @@ int main(int argc, char** argv) try {
 
   // Pose every frame and fit; a sink of one's own hears of every frame, and cancels by throwing.
   sheen::pipeline::ProgressSink silent;
-  const auto fitted = sheen::pipeline::reconstruct({sheen::capture::open_session(argv[1])},
-                                                   {.threads = 2}, silent);
+  const auto fitted =
+      sheen::pipeline::reconstruct({sheen::capture::open_session(argv[1])}, {.threads = 2}, silent);
   std::printf("%zu of %d frames posed\n", fitted.frames().posed.size(),
               fitted.frames().frames_read);
 
-  // Ask what patch 0 looks like from straight above: (0, 0) is the middle of the disc of directions.
+  // Ask what patch 0 looks like from straight above: (0, 0) is the middle of the disc of
+  // directions.
   const auto& patches = sheen::fitting::require_patches(fitted.light_field(), "this example");
   const auto rgb = patches.evaluate(0, {0, 0}).colour();
   std::printf("patch 0 from above: sRGB %.3f %.3f %.3f\n", static_cast<double>(rgb.x()),
