@@ -23,6 +23,8 @@
 namespace sheen::capture::test {
 namespace {
 
+using tests::TemporaryFolder;
+
 constexpr int kFps = 30;
 constexpr std::size_t kCameraBytes = 120'000;  // of an image at 1280x720
 
@@ -40,7 +42,7 @@ int count_frames(const Session& session) {
 }
 
 TEST(SessionRecorder, IsASessionFromTheStart) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto folder = scratch.path() / "walk";
   SessionRecorder recorder(folder, recording_setup(scratch), kFps);
   const Session session = open_session(folder);
@@ -51,7 +53,7 @@ TEST(SessionRecorder, IsASessionFromTheStart) {
 }
 
 TEST(SessionRecorder, KeepsEveryByteAndTime) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto folder = scratch.path() / "walk";
   SessionRecorder recorder(folder, recording_setup(scratch), kFps);
   for (int i = 0; i < 50; ++i) ASSERT_TRUE(recorder.add(live_image(i)));
@@ -74,7 +76,7 @@ TEST(SessionRecorder, KeepsEveryByteAndTime) {
 }
 
 TEST(SessionRecorder, RefusesToWriteOverSomething) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   scratch.write("walk/precious.txt", "mine");
   const SessionSetup setup = recording_setup(scratch);
   expect_bad_input([&] { SessionRecorder(scratch.path() / "walk", setup, kFps); }, "walk",
@@ -101,7 +103,7 @@ TEST(SessionRecorder, RefusesToWriteOverSomething) {
 }
 
 TEST(SessionRecorder, LosesLessThanASecondToAKill) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const SessionSetup setup = recording_setup(scratch);
   std::mt19937 random(17);
   for (int attempt = 0; attempt < 10; ++attempt) {
@@ -126,7 +128,7 @@ TEST(SessionRecorder, LosesLessThanASecondToAKill) {
 }
 
 TEST(SessionRecorder, OpensWhateverTheEndLooksLike) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto folder = scratch.path() / "walk";
   {
     SessionRecorder recorder(folder, recording_setup(scratch), kFps);
@@ -177,7 +179,7 @@ class FullDisk {
 };
 
 TEST(SessionRecorder, KeepsWhatWasRecordedWhenTheDiskIsFull) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto folder = scratch.path() / "walk";
   SessionRecorder recorder(folder, recording_setup(scratch), kFps);
   int fitted = 0;
@@ -198,7 +200,7 @@ TEST(SessionRecorder, KeepsWhatWasRecordedWhenTheDiskIsFull) {
 TEST(SessionRecorder, GivesBackWhatItTookAndCouldNotWrite) {
   // The writer may be slow or fast; in any order what was taken is written or given back. Attempts
   // go on until images waited behind the one that met the full disk.
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const SessionSetup setup = recording_setup(scratch);
   std::vector<LiveImage> images;
   for (int i = 0; i < 20; ++i) images.push_back(live_image(i, kCameraBytes));
@@ -256,7 +258,7 @@ class CountingCamera : public Camera {
 };
 
 TEST(CameraRecording, GivesEveryFrameToWhoeverIsSlow) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto folder = scratch.path() / "walk";
   SessionRecorder recorder(folder, recording_setup(scratch), kFps);
   CameraRecording recording(std::make_unique<CountingCamera>(90), recorder, {.frames = 80});
@@ -278,7 +280,7 @@ TEST(CameraRecording, GivesEveryFrameToWhoeverIsSlow) {
 }
 
 TEST(CameraRecording, GoesOnWithoutTheDisk) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto folder = scratch.path() / "walk";
   SessionRecorder recorder(folder, recording_setup(scratch), kFps);
   int reports = 0;
@@ -304,7 +306,7 @@ TEST(CameraRecording, GoesOnWithoutTheDisk) {
 
 TEST(CameraRecording, ReportsAFaultThatIsFoundAfterTheLastImage) {
   constexpr int images = 12;
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const SessionSetup setup = recording_setup(scratch);
   // As many bytes as the images take, so that the index at the end finds no room.
   std::uintmax_t bytes = 0;
@@ -347,7 +349,7 @@ class GreedyCamera : public CountingCamera {
 };
 
 TEST(CameraRecording, KeepsWhatItHasWhenMemoryIsUsedUp) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto folder = scratch.path() / "walk";
   SessionRecorder recorder(folder, recording_setup(scratch), kFps);
   CameraRecording recording(std::make_unique<GreedyCamera>(), recorder, {});
@@ -359,7 +361,7 @@ TEST(CameraRecording, KeepsWhatItHasWhenMemoryIsUsedUp) {
 }
 
 TEST(CameraRecording, EndsWhenItIsToldTo) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   SessionRecorder recorder(scratch.path() / "walk", recording_setup(scratch), kFps);
   CameraRecording recording(std::make_unique<CountingCamera>(5), recorder, {});
   const auto live = recording.frames();
@@ -370,7 +372,7 @@ TEST(CameraRecording, EndsWhenItIsToldTo) {
 }
 
 TEST(FrameStamps, RefusesWhatIsNoSuchFile) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto expect = [&](const std::string& text, const char* word) {
     const auto path = scratch.write("frames.csv", text);
     expect_bad_input([&] { read_stamps(path); }, "frames.csv", word);
