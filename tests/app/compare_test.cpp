@@ -17,11 +17,11 @@
 namespace sheen::tests {
 namespace {
 
-using app::CostBenefit;
+using evaluation::CostBenefit;
 namespace fs = std::filesystem;
 
 std::vector<std::uint8_t> front(const std::vector<CostBenefit>& points) {
-  return app::pareto_front(points);
+  return evaluation::pareto_front(points);
 }
 
 TEST(ParetoFront, HoldsExactlyThePointsNobodyBeats) {
@@ -66,8 +66,8 @@ TEST(ParetoFront, OfRandomPointsRisesAndLeavesNobodyOutWithoutCause) {
   }
 }
 
-app::ComparedCandidate figures(const char* name, double psnr_db, std::uintmax_t bytes) {
-  app::ComparedCandidate row{{}, {name, name, "", "", nullptr}, {}, {}};
+evaluation::ComparedCandidate figures(const char* name, double psnr_db, std::uintmax_t bytes) {
+  evaluation::ComparedCandidate row{{}, {name, name, "", ""}, {}, {}};
   row.measured.error.psnr_db = psnr_db;
   row.measured.model_bytes = bytes;
   row.measured.fit_ms = 10;
@@ -76,22 +76,24 @@ app::ComparedCandidate figures(const char* name, double psnr_db, std::uintmax_t 
 
 TEST(Advice, IsTheSmallestModelWithinHalfADecibelOfTheBest) {
   // 0.4 dB below the best at 80 of its 1000 bytes; 0.6 dB below does not count, however small.
-  const std::vector<app::ComparedCandidate> rows{
+  const std::vector<evaluation::ComparedCandidate> rows{
       figures("tiny", 29.4, 10), figures("small", 29.6, 80), figures("large", 30.0, 1000),
       figures("bulky", 29.9, 500)};
-  const auto advice = app::advise(rows, 1);
+  const auto advice = evaluation::advise(rows, 1);
   ASSERT_TRUE(advice);
   EXPECT_EQ(advice->candidate, "small");
   EXPECT_NE(advice->sentence.find("0.4 dB below the best, \"large\", at 8 % of its bytes and "
                                   "1.0 times its fitting time"),
             std::string::npos)
       << advice->sentence;
-  EXPECT_FALSE(app::advise({}, 1));
+  EXPECT_FALSE(evaluation::advise({}, 1));
 }
 
 TEST(SessionNames, AreTheFoldersOwnUnlessTheyClash) {
-  EXPECT_EQ(app::session_names({"a/box", "b/stone/"}), (std::vector<std::string>{"box", "stone"}));
-  EXPECT_EQ(app::session_names({"a/box", "b/box"}), (std::vector<std::string>{"a/box", "b/box"}));
+  EXPECT_EQ(evaluation::session_names({"a/box", "b/stone/"}),
+            (std::vector<std::string>{"box", "stone"}));
+  EXPECT_EQ(evaluation::session_names({"a/box", "b/box"}),
+            (std::vector<std::string>{"a/box", "b/box"}));
 }
 
 /// Good for the first fields of a line: session and candidate hold no comma here, labels do.
@@ -182,7 +184,7 @@ TEST_F(Compare, MeasuresEveryCandidateOnTheSameSamplesAndViews) {
     EXPECT_EQ(row.at("samples"), rows[0].at("samples"));
     EXPECT_EQ(row.at("views"), rows[0].at("views"));
   }
-  EXPECT_EQ(measured, app::candidate_names());
+  EXPECT_EQ(measured, evaluation::candidate_names());
   expect_fronts(rows, "fit_ms_per_frame", "front_fit_time");
   expect_fronts(rows, "render_ms_per_view", "front_render_time");
   expect_fronts(rows, "model_bytes", "front_bytes");

@@ -29,7 +29,7 @@ Measurement measured(const Method& method, MaterialClass material, ViewSet views
 }
 
 // A light field of one colour that is known.
-class Grey final : public fitting::LightField {
+class Grey final : public fitting::PatchLightField {
  public:
   explicit Grey(float value) : value_(value) {}
   std::string_view representation() const override { return "grey"; }
