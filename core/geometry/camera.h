@@ -19,9 +19,9 @@ class CameraModel {
     int height_px = 0;
     Eigen::Vector2d focal_px{0, 0};
     Eigen::Vector2d principal_px{0, 0};
-    LensKind lens = LensKind::rational;
     /// Of a rational lens k1 k2 p1 p2 k3 k4 k5 k6, of a fisheye k1 k2 k3 k4; the others are zero.
     std::array<double, 8> distortion{};
+    LensKind lens = LensKind::rational;
 
     friend bool operator==(const Intrinsics&, const Intrinsics&) = default;
   };
