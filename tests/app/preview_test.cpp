@@ -14,8 +14,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <functional>
 #include <numbers>
+#include <semaphore>
 #include <set>
 #include <thread>
 
@@ -258,25 +260,58 @@ TEST(LiveSession, UndoneFramesHaveNeverBeenSeen) {
   EXPECT_EQ(undone.live().path_since(0, 0).poses.size(), 21u);
 }
 
+/// Somebody in front of the window, who looks whenever there is something new to see.
+class Person {
+ public:
+  explicit Person(LiveSession& live) : live_(live) {
+    live.set_wake([this] { news_.release(); });
+  }
+  ~Person() { live_.set_wake({}); }
+  Person(const Person&) = delete;
+  Person& operator=(const Person&) = delete;
+  Person(Person&&) = delete;
+  Person& operator=(Person&&) = delete;
+
+  /// Waits until it sees something; false when it never does, which nobody should wait for.
+  template <typename Condition>
+  bool sees(const Condition& condition) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (!condition(live_.status())) {
+      if (!news_.try_acquire_until(deadline)) return false;
+    }
+    return true;
+  }
+
+ private:
+  LiveSession& live_;
+  std::counting_semaphore<> news_{0};
+};
+
 TEST(LiveSession, PausedRunsWaitAndSaveMeanwhile) {
   LivePipeline pipeline(6);
-  std::jthread person;
+  Person person(pipeline.live());
+  bool saw_all = false;
+  // Asks for a copy and then lets it go on, once it is paused. A run that did not wait would be
+  // further on, or over, when it is asked.
+  std::jthread thread([&] {
+    saw_all = person.sees(
+        [](const LiveStatus& status) { return status.phase == LiveStatus::Phase::paused; });
+    pipeline.live().request_save();
+    saw_all &= person.sees([](const LiveStatus& status) { return status.note == "saved"; });
+    pipeline.live().set_paused(false);
+  });
+  std::string after_four;
   pipeline.run(always, [&](int frame, LiveSession& live) {
     if (frame != 3) return;
+    after_four = pipeline.model_bytes();
     live.set_paused(true);
-    // Somebody who asks for a copy and then lets it go on, as soon as it is paused.
-    person = std::jthread([&live] {
-      while (live.status().phase != LiveStatus::Phase::paused) {
-        std::this_thread::yield();
-      }
-      live.request_save();
-      while (live.status().note != "saved") std::this_thread::yield();
-      live.set_paused(false);
-    });
   });
+  thread.join();
+  EXPECT_TRUE(saw_all);
   EXPECT_EQ(pipeline.live().status().frames_fitted, 6);
   // The copy holds four frames, the model six.
-  EXPECT_NE(pipeline.early_copy(), pipeline.model_bytes());
+  EXPECT_TRUE(pipeline.early_copy() == after_four);
+  EXPECT_FALSE(pipeline.model_bytes() == after_four);
 }
 
 }  // namespace

@@ -18,8 +18,10 @@ MODULES = {
     "evaluation": {"core", "capture", "fitting", "render", "pipeline", "evaluation"},
     "app": {"core", "capture", "fitting", "render", "pipeline", "evaluation", "app"},
 }
-# Programs that measure, and proofs: whatever they look at, and their own. No module may include them.
+# Programs that measure, proofs, bindings: whatever they look at, and their own. No module may include
+# them.
 MODULES["bench"] = MODULES["app"] | {"bench"}
+MODULES["python"] = MODULES["pipeline"] | {"render", "python"}
 MODULES["tests"] = MODULES["bench"] | {"tests"}
 
 # Libraries that are met in some places only: pattern of the include -> folders. Proofs may use any.
