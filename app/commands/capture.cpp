@@ -4,7 +4,7 @@
 #include "app/commands/camera_list.h"
 #include "app/commands/replay.h"
 #include "app/interrupt.h"
-#include "app/preview/window.h"
+#include "app/preview/run_preview.h"
 #include "capture/session/camera_recording.h"
 #include "capture/session/session.h"
 #include "core/diagnostics/error.h"
@@ -64,7 +64,7 @@ void check_before_recording(const CaptureOptions& options, const capture::Sessio
   const core::Mesh mesh = pipeline::read_session_mesh(scene, silent);
   static_cast<void>(pipeline::SessionScene(scene, mesh, pipeline::PoseSource::tags, silent));
   context.check_outputs({options.fit.output});
-  if (options.fit.preview) Window::check_display();
+  if (options.fit.preview) check_display();
 }
 
 capture::RecordingTerms terms_of(const CaptureOptions& options, const CommandContext& context,

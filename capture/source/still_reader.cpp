@@ -70,6 +70,9 @@ cv::Mat StillReader::read(const std::filesystem::path& path, std::optional<Image
   if (!std::filesystem::exists(path, no_throw)) {
     throw core::bad_input(path, "there is no such image", "check the path");
   }
+  if (!std::filesystem::is_regular_file(path, no_throw)) {  // a folder, a pipe
+    throw core::bad_input(path, "is no file", "put an image there");
+  }
   const std::vector<std::uint8_t> bytes = all_bytes(path);
   const ImageFacts facts = read_image_facts(bytes);
   check_headers(path, facts);
