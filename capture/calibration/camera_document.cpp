@@ -216,7 +216,7 @@ std::optional<LensRecord> colmap_camera(const std::vector<std::string>& words,
     fail(path, "is of the camera model " + core::quotable(model) + ", which is not read",
          "use OPENCV or another of COLMAP's models with radial and tangential distortion");
   }
-  if (model == "OPENCV_FISHEYE") record.kind = LensKind::equidistant;
+  if (model == "OPENCV_FISHEYE") record.kind = core::LensKind::fisheye;
   return record;
 }
 

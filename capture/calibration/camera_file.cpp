@@ -122,8 +122,8 @@ void read_camera_matrix(const KeyReader& reader, LensRecord& record) {
   record.principal_px = {K[2], K[5]};
 }
 
-/// What the file says about the kind of its lens; radial where it says nothing.
-LensKind kind_of(const KeyReader& reader) {
+/// What the file says about the kind of its lens; rational where it says nothing.
+core::LensKind kind_of(const KeyReader& reader) {
   const std::string camera = reader.text({"camera_model", "model_type", "camera_type"});
   const std::string distortion = reader.text({"distortion_model", "distortion_type"});
   const std::string flag = reader.text({"fisheye_model", "fisheye", "is_fisheye"});
@@ -133,7 +133,7 @@ LensKind kind_of(const KeyReader& reader) {
   if ((!flag.empty() && flag != "0" && flag != "false") ||
       is_one_of(distortion, {"equidistant", "fisheye", "kannala_brandt", "equi"}) ||
       is_one_of(camera, {"fisheye", "opencv_fisheye", "kannala_brandt", "equidistant"})) {
-    return LensKind::equidistant;
+    return core::LensKind::fisheye;
   }
   if (!is_one_of(camera, {"", "pinhole", "opencv", "perspective", "simple_pinhole", "radial",
                           "simple_radial", "brown"})) {
@@ -145,7 +145,7 @@ LensKind kind_of(const KeyReader& reader) {
     reader.fail("distortion_model is " + core::quotable(distortion) + ", which is not modelled",
                 "calibrate with plumb_bob or rational_polynomial (radial and tangential)");
   }
-  return LensKind::radial;
+  return core::LensKind::rational;
 }
 
 /// OpenCV, ROS, and what Python programs dump under the same names.
@@ -190,7 +190,7 @@ LensRecord nerfstudio_record(const KeyReader& reader) {
   record.principal_px = {reader.number_of("cx", record.width_px / 2.0) - 0.5,
                          reader.number_of("cy", record.height_px / 2.0) - 0.5};
   const auto k = [&reader](const char* name) { return reader.number_of(name, 0); };
-  record.distortion = record.kind == LensKind::equidistant
+  record.distortion = record.kind == core::LensKind::fisheye
                           ? std::vector<double>{k("k1"), k("k2"), k("k3"), k("k4")}
                           : std::vector<double>{k("k1"), k("k2"), k("p1"), k("p2"), k("k3")};
   return record;
@@ -204,7 +204,7 @@ LensRecord agisoft_record(const KeyReader& reader) {
   record.height_px = reader.side("height", {"height"});
   const std::string projection = reader.text({"projection"});
   if (projection == "fisheye" || projection == "equidistant_fisheye") {
-    record.kind = LensKind::equidistant;
+    record.kind = core::LensKind::fisheye;
   } else if (projection != "frame" && !projection.empty()) {
     reader.fail("projection is " + core::quotable(projection) + ", which is not modelled",
                 "calibrate as a frame camera");
@@ -219,7 +219,7 @@ LensRecord agisoft_record(const KeyReader& reader) {
                          record.height_px / 2.0 + reader.number_of("cy", 0) - 0.5};
   const auto k = [&reader](const char* name) { return reader.number_of(name, 0); };
   const double corner = std::hypot(record.width_px, record.height_px) / 2 / std::max(f, 1e-9);
-  const bool is_fisheye = record.kind == LensKind::equidistant;
+  const bool is_fisheye = record.kind == core::LensKind::fisheye;
   const auto refuse = [&](const char* term) {
     reader.fail(std::string(term) + " is not 0, a term that is not modelled",
                 std::string("adjust the calibration without ") + term);
@@ -257,8 +257,11 @@ void write_camera(const std::filesystem::path& path, const core::CameraModel& ca
   K.at<double>(0, 2) = intrinsics.principal_px.x();
   K.at<double>(1, 2) = intrinsics.principal_px.y();
   const auto& k = intrinsics.distortion;
+  const bool is_fisheye = intrinsics.lens == core::LensKind::fisheye;
   const bool is_rational = k[5] != 0 || k[6] != 0 || k[7] != 0;
-  const std::vector<double> coefficients(k.begin(), k.begin() + (is_rational ? 8 : 5));
+  const std::vector<double> coefficients(k.begin(), k.begin() + (is_fisheye    ? 4
+                                                                 : is_rational ? 8
+                                                                               : 5));
 
   core::StagedOutput output(path);
   try {
@@ -267,8 +270,9 @@ void write_camera(const std::filesystem::path& path, const core::CameraModel& ca
     if (!storage.isOpened()) {
       throw core::Error(core::Error::Kind::run_failed, path, "cannot be written", "check the disk");
     }
-    storage << "image_width" << intrinsics.width_px << "image_height" << intrinsics.height_px
-            << "camera_matrix" << K << "distortion_coefficients"
+    storage << "image_width" << intrinsics.width_px << "image_height" << intrinsics.height_px;
+    if (is_fisheye) storage << "fisheye_model" << 1;
+    storage << "camera_matrix" << K << "distortion_coefficients"
             << cv::Mat(coefficients, true).reshape(1, 1);
   } catch (const cv::Exception&) {
     throw core::Error(core::Error::Kind::run_failed, path, "cannot be written", "check the disk");

@@ -36,12 +36,14 @@ void check_matrix(const LensRecord& record, const std::filesystem::path& path) {
   if (!(least > 0) || most > 1e3 * longer) {
     fail(path, "the focal lengths are not positive or not believable");
   }
-  if (record.kind == LensKind::radial && most < 0.1 * longer) {
+  if (most < 0.1 * longer) {
+    const bool is_fisheye = record.kind == core::LensKind::fisheye;
+    const double view = is_fisheye ? longer / most : 2 * std::atan(longer / 2 / most);
     fail(path,
          fmt::format(
              "a focal length of {:.4g} px for images {} px wide is a view of {:.0f} degrees, "
              "which no such lens has",
-             most, record.width_px, 2 * std::atan(longer / 2 / most) * 180 / std::numbers::pi),
+             most, record.width_px, view * 180 / std::numbers::pi),
          "give the focal length in pixels, not in millimetres");
   }
   if (most > 2 * least) {
@@ -60,9 +62,9 @@ void check_matrix(const LensRecord& record, const std::filesystem::path& path) {
   }
 }
 
-/// The coefficients that the camera model has; those beyond must be zero.
-std::array<double, 8> radial_coefficients(const std::vector<double>& k,
-                                          const std::filesystem::path& path) {
+/// Those of a rational lens; the ones that the model lacks must be zero.
+std::array<double, 8> rational_coefficients(const std::vector<double>& k,
+                                            const std::filesystem::path& path) {
   constexpr std::size_t modelled = 8;
   const std::size_t n = k.size();
   if (n != 0 && n != 4 && n != 5 && n != 8 && n != 12 && n != 14) {
@@ -83,27 +85,19 @@ std::array<double, 8> radial_coefficients(const std::vector<double>& k,
   return coefficients;
 }
 
-core::CameraModel radial_camera(const LensRecord& record, const std::filesystem::path& path) {
-  core::CameraModel::Intrinsics intrinsics;
-  intrinsics.width_px = record.width_px;
-  intrinsics.height_px = record.height_px;
-  intrinsics.focal_px = record.focal_px;
-  intrinsics.principal_px = record.principal_px;
-  intrinsics.distortion = radial_coefficients(record.distortion, path);
-  core::CameraModel camera(intrinsics);
-  if (!(camera.valid_radius() > 0.01)) fail(path, "the distortion folds the image over");
-  return camera;
-}
-
-/// A fisheye lens: pixel = f * theta * (1 + k1 theta^2 + k2 theta^4 + k3 theta^6 + k4 theta^8).
-core::CameraModel equidistant_camera(const LensRecord& record, const std::filesystem::path& path) {
-  if (record.distortion.size() != 4 && !record.distortion.empty()) {
-    fail(path,
-         fmt::format("an equidistant lens has 4 coefficients, not {}", record.distortion.size()));
+/// Those of a fisheye. OpenCV's own sample writes a fifth, which is zero.
+std::array<double, 8> fisheye_coefficients(const std::vector<double>& k,
+                                           const std::filesystem::path& path) {
+  constexpr std::size_t modelled = 4;
+  const bool has_more =
+      std::any_of(k.begin() + static_cast<std::ptrdiff_t>(std::min(k.size(), modelled)), k.end(),
+                  [](double value) { return value != 0; });
+  if (has_more || (!k.empty() && k.size() < modelled)) {
+    fail(path, fmt::format("a fisheye lens has 4 coefficients, k1 to k4, not {}", k.size()));
   }
-  fail(path, "is of a fisheye lens (equidistant distortion), which is not modelled",
-       "use a camera with an ordinary lens, or undistort the recording and give the camera file of "
-       "the result");
+  std::array<double, 8> coefficients{};
+  std::copy_n(k.begin(), std::min(k.size(), modelled), coefficients.begin());
+  return coefficients;
 }
 
 }  // namespace
@@ -115,8 +109,18 @@ core::CameraModel camera_of(const LensRecord& record, const std::filesystem::pat
     if (!std::isfinite(coefficient))
       fail(path, "distortion_coefficients holds a number not finite");
   }
-  return record.kind == LensKind::equidistant ? equidistant_camera(record, path)
-                                              : radial_camera(record, path);
+  core::CameraModel::Intrinsics intrinsics;
+  intrinsics.width_px = record.width_px;
+  intrinsics.height_px = record.height_px;
+  intrinsics.focal_px = record.focal_px;
+  intrinsics.principal_px = record.principal_px;
+  intrinsics.lens = record.kind;
+  intrinsics.distortion = record.kind == core::LensKind::fisheye
+                              ? fisheye_coefficients(record.distortion, path)
+                              : rational_coefficients(record.distortion, path);
+  core::CameraModel camera(intrinsics);
+  if (!(camera.valid_radius() > 0.01)) fail(path, "the distortion folds the image over");
+  return camera;
 }
 
 }  // namespace sheen::capture

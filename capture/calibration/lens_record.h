@@ -10,17 +10,14 @@
 
 namespace sheen::capture {
 
-/// How a lens bends rays, as camera files name it.
-enum class LensKind {
-  radial,      ///< OpenCV's: k1 k2 p1 p2 k3 k4 k5 k6 (plumb_bob, radtan, rational_polynomial)
-  equidistant  ///< fisheye: k1 k2 k3 k4 of the angle from the axis
-};
-
 /// What a camera file says, in OpenCV's conventions: pixel (0, 0) is the centre of the first pixel.
 struct LensRecord {
   int width_px = 0, height_px = 0;
   Eigen::Vector2d focal_px{0, 0}, principal_px{0, 0};
-  LensKind kind = LensKind::radial;
+  core::LensKind kind = core::LensKind::rational;
+  /// As the file has it: k1 k2 p1 p2 k3 ... of a rational lens (plumb_bob, radtan,
+  /// rational_polynomial), k1 k2 k3 k4 of a fisheye (equidistant, Kannala and Brandt); none where
+  /// the lens bends nothing.
   std::vector<double> distortion;
 };
 

@@ -208,13 +208,15 @@ class GltfReader {
 
   void add_notes(bool has_skin) {
     if (has_skin) {
-      mesh_.notes.push_back("has a skin, which is passed over: the mesh stands as it was modelled");
+      mesh_.notes.emplace_back(
+          "has a skin, which is passed over: the mesh stands as it was modelled");
     }
     if (has_targets_) {
-      mesh_.notes.push_back("has morph targets, which are passed over: the basic shape is taken");
+      mesh_.notes.emplace_back(
+          "has morph targets, which are passed over: the basic shape is taken");
     }
     if (without_surface_ > 0 && !mesh_.triangles.empty()) {
-      mesh_.notes.push_back("has points or lines, which are passed over");
+      mesh_.notes.emplace_back("has points or lines, which are passed over");
     }
   }
 

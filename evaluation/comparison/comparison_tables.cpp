@@ -84,8 +84,12 @@ std::string to_csv(const Comparison& comparison) {
     std::string names;
     std::string values;
     for (const auto& [name, value] : fields.items()) {
-      names += (names.empty() ? "" : ",") + name;
-      values += (values.empty() ? "" : ",") + csv_value(value);
+      if (!names.empty()) {
+        names += ',';
+        values += ',';
+      }
+      names += name;
+      values += csv_value(value);
     }
     if (csv.empty()) csv = names + '\n';
     csv += values + '\n';

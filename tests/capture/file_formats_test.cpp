@@ -62,7 +62,9 @@ TEST(CameraFile, RefusesEachFault) {
   expect_bad_input([&] { read_camera(scratch.path() / "none.yaml"); }, "none.yaml", "no such file");
   refuse("", "FileStorage");
   refuse("garbage \x01\x02", "FileStorage");
-  refuse("%YAML:1.0\n---\n" + std::string(5000, '['), "nested");
+  std::string deep = "%YAML:1.0\n---\n";
+  deep.append(5000, '[');
+  refuse(deep, "nested");
   refuse(camera_text(kGoodK, kGoodD).substr(0, 150), "FileStorage");
   refuse(camera_text(kGoodK, kGoodD, "0"), "image_width");
   refuse(camera_text(kGoodK, kGoodD, "6.5"), "image_width");

@@ -257,6 +257,7 @@ TEST(SamplingKernels, ProjectWithTheSameBitsOnEveryInstructionSet) {
                               {2.4f, 3.2f, 3.0f},
                               {300, 310},
                               {320, 240},
+                              LensKind::rational,
                               {-0.3f, 0.1f, 2e-3f, -1e-3f, 0, 0, 0, 0},
                               1.5f,
                               2,

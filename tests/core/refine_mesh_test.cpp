@@ -88,7 +88,7 @@ float longest_edge(const Mesh& mesh) {
 }
 
 /// Whether every edge, told by the places of its ends, runs once in either direction.
-bool is_closed(const Mesh& mesh) {
+bool is_watertight(const Mesh& mesh) {
   std::map<std::pair<Place, Place>, int> runs;
   for (const auto& t : mesh.triangles) {
     for (int side = 0; side < 3; ++side) {
@@ -123,7 +123,7 @@ TEST(RefineMesh, KeepsAreaVolumeAndClosure) {
       // division by 6 of each term.
       EXPECT_EQ(area(refined), 6.0);
       EXPECT_NEAR(volume(refined), 1.0, 1e-12);
-      EXPECT_TRUE(is_closed(refined));
+      EXPECT_TRUE(is_watertight(refined));
     }
   }
 }
@@ -131,7 +131,7 @@ TEST(RefineMesh, KeepsAreaVolumeAndClosure) {
 TEST(RefineMesh, KeepsASphereClosedAndItsChordsFlat) {
   const Mesh sphere = testing::sphere(9, 14);
   const Mesh refined = refine_mesh(sphere, 0.1f, kPlenty);
-  EXPECT_TRUE(is_closed(refined));
+  EXPECT_TRUE(is_watertight(refined));
   // Midpoints round to the next float: relative 6e-8 each, over a handful of rounds.
   EXPECT_NEAR(area(refined), area(sphere), 1e-5);
   EXPECT_NEAR(volume(refined), volume(sphere), 1e-5);
@@ -211,13 +211,13 @@ TEST(RefineMesh, StopsAtTheVertexLimitWithTheLongestEdgesHalved) {
     const Mesh refined = refine_mesh(sphere, 0.01f, most);
     EXPECT_LE(refined.positions.size(), std::max(most, sphere.positions.size()));
     EXPECT_GE(refined.positions.size(), before);
-    EXPECT_TRUE(is_closed(refined));
+    EXPECT_TRUE(is_watertight(refined));
     before = refined.positions.size();
   }
   // Cut short within a round: hard edges are split on both sides or on none.
   const Mesh cube = hard_cube();
   for (std::size_t most = cube.positions.size(); most < cube.positions.size() + 200; most += 7) {
-    EXPECT_TRUE(is_closed(refine_mesh(cube, 0.01f, most)));
+    EXPECT_TRUE(is_watertight(refine_mesh(cube, 0.01f, most)));
   }
   // The six face diagonals (sqrt 2, two copies each) go before the sides (1): 36 + 12 vertices.
   EXPECT_EQ(refine_mesh(cube, 0.01f, 36 + 12).positions.size(), 48u);
