@@ -62,6 +62,7 @@ CameraKeys yaml_keys(const YAML::Node& map) {
   for (const auto& member : map) {
     if (!member.first.IsScalar()) continue;
     const YAML::Node& value = member.second;
+    if (value.IsMap() && !value["data"]) continue;
     std::vector<std::string> words;
     append_scalars(value.IsMap() ? value["data"] : value, words);
     if (words.size() <= kMostWords) keys[member.first.Scalar()] = std::move(words);

@@ -94,7 +94,7 @@ Trajectory::Entry parse_line(const std::filesystem::path& path, int line, std::s
   // Files carry few digits; anything far from length one is something else than a rotation.
   if (!(std::abs(rotation.norm() - 1) < 0.05)) {
     fail(path, line,
-         rotation.norm() == 0 ? "holds a rotation of four zeros, as a lost pose has: leave it out"
+         rotation.norm() == 0 ? "holds a quaternion of zeros, as a lost pose has: leave it out"
                               : "holds no unit quaternion");
   }
   Trajectory::Entry entry{n[0], Eigen::Isometry3d::Identity()};

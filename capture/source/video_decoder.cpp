@@ -21,6 +21,7 @@ namespace {
 constexpr double kMostFrames = 1e8;
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
 constexpr std::size_t kMostPending = 256;  // packets whose picture is not out yet
+constexpr int kMostFaults = 1000;  // in a row, without a packet: the decoder has lost itself
 
 struct CloseInput {
   void operator()(AVFormatContext* input) const { avformat_close_input(&input); }
@@ -59,9 +60,13 @@ Input open_input(const std::filesystem::path& path) {
   return input;
 }
 
-std::optional<double> usable_rate(AVRational rate) {
+/// For a few images FFmpeg takes the ticks of the container's clock for a rate, 1000 in Matroska.
+std::optional<double> usable_rate(AVRational rate, AVRational tick) {
+  constexpr double fastest_camera = 500;
   const double fps = rate.den != 0 ? av_q2d(rate) : 0;
-  return std::isfinite(fps) && fps > 0.01 && fps < 1e4 ? std::optional(fps) : std::nullopt;
+  const bool is_clock = fps > fastest_camera && fps * av_q2d(tick) > 0.99;
+  return std::isfinite(fps) && fps > 0.01 && fps < 1e4 && !is_clock ? std::optional(fps)
+                                                                    : std::nullopt;
 }
 
 Orientation orientation_of(const AVStream& stream) {
@@ -118,6 +123,7 @@ struct VideoDecoder::Impl {
   explicit Impl(const std::filesystem::path& video);
 
   bool decode();
+  void read_packet();
   bool feed();
   void note_packet();
   void place_picture();
@@ -130,6 +136,7 @@ struct VideoDecoder::Impl {
   Packet packet{av_packet_alloc()};
   FramePtr frame{av_frame_alloc()};
   VideoFacts facts;
+  bool has_packet = false;  ///< `packet` is read, but not with the decoder yet
   bool is_draining = false;
   bool has_ended = false;
   bool counts_packets = true;      ///< one packet is one picture
@@ -159,8 +166,8 @@ VideoDecoder::Impl::Impl(const std::filesystem::path& video)
   codec->thread_count = 0;
   if (avcodec_open2(codec.get(), decoder, nullptr) < 0) throw undecodable(path);
   facts.size = {stream.codecpar->width, stream.codecpar->height};
-  facts.fps = usable_rate(stream.avg_frame_rate);
-  if (!facts.fps) facts.fps = usable_rate(stream.r_frame_rate);
+  facts.fps = usable_rate(stream.avg_frame_rate, stream.time_base);
+  if (!facts.fps) facts.fps = usable_rate(stream.r_frame_rate, stream.time_base);
   facts.frames = shown_pictures(*input, stream, facts.fps);
   facts.orientation = orientation_of(stream);
   // AVI states a rate and counts; the other containers stamp every picture.
@@ -177,25 +184,30 @@ void VideoDecoder::Impl::note_packet() {
   if (pending.size() > kMostPending) counts_packets = false;
 }
 
-/// Gives the decoder the next packet, or the end; false when it wants nothing more.
-bool VideoDecoder::Impl::feed() {
-  if (is_draining) return false;
+/// Reads the next packet of our stream; at the end there is none.
+void VideoDecoder::Impl::read_packet() {
   while (true) {
     const int status = av_read_frame(input.get(), packet.get());
     if (status == AVERROR(EAGAIN)) continue;
-    if (status < 0) {
-      is_draining = true;
-      return avcodec_send_packet(codec.get(), nullptr) >= 0;
-    }
-    const bool is_ours = packet->stream_index == stream_index;
-    if (is_ours) {
-      note_packet();
-      // What cannot be decoded gives no picture; the next one may.
-      static_cast<void>(avcodec_send_packet(codec.get(), packet.get()));
-    }
+    has_packet = status >= 0;
+    if (!has_packet || packet->stream_index == stream_index) break;
     av_packet_unref(packet.get());
-    if (is_ours) return true;
   }
+  if (has_packet) note_packet();
+}
+
+/// Gives the decoder the next packet, or the end; false after the end. A packet that the decoder
+/// does not take yet is kept for the next call.
+bool VideoDecoder::Impl::feed() {
+  if (is_draining) return false;
+  if (!has_packet) read_packet();
+  is_draining = !has_packet;
+  const int status = avcodec_send_packet(codec.get(), has_packet ? packet.get() : nullptr);
+  if (status == AVERROR(EAGAIN)) return true;
+  // What cannot be decoded gives no picture; the next one may.
+  av_packet_unref(packet.get());
+  has_packet = false;
+  return true;
 }
 
 void VideoDecoder::Impl::fill_in_colours() {
@@ -242,6 +254,7 @@ void VideoDecoder::Impl::place_picture() {
 }
 
 bool VideoDecoder::Impl::decode() {
+  int faults = 0;
   while (!has_ended) {
     const int status = avcodec_receive_frame(codec.get(), frame.get());
     if (status == 0) {
@@ -253,10 +266,12 @@ bool VideoDecoder::Impl::decode() {
       fill_in_colours();
       return true;
     }
-    if (status == AVERROR_EOF || (status != AVERROR(EAGAIN) && is_draining)) {
-      has_ended = true;
-    } else if (!feed()) {
-      has_ended = true;
+    if (status == AVERROR(EAGAIN)) {
+      faults = 0;
+      has_ended = !feed();
+    } else {
+      // Any other fault is one picture's; those that are ready come first, then the next packet.
+      has_ended = status == AVERROR_EOF || ++faults > kMostFaults;
     }
   }
   // Packets whose picture never came.

@@ -86,7 +86,7 @@ std::vector<std::size_t> roots_of(const json& document, const Forest& forest) {
       node_list(gltf_entry(document, "scenes", gltf_size(document, "scene", 0)), "nodes", nodes);
   std::vector<std::uint8_t> is_named(nodes, 0);
   for (const std::size_t root : roots) {
-    if (forest.has_parent[root] != 0 || is_named[root]++ != 0) refuse_nodes();
+    if (is_named[root]++ != 0) refuse_nodes();
   }
   return roots;
 }

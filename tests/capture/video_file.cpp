@@ -15,6 +15,8 @@ extern "C" {
 namespace sheen::capture::test {
 namespace {
 
+constexpr std::int64_t kDuration_ms = 40;
+
 void require(bool is_good, const char* what) {
   if (!is_good) throw std::runtime_error(std::string("cannot write the video: ") + what);
 }
@@ -122,7 +124,7 @@ void write_video(const std::filesystem::path& path, const VideoSpec& spec) {
   if (spec.clockwise_degrees) {
     auto* const matrix = reinterpret_cast<std::int32_t*>(
         av_stream_new_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, 9 * sizeof(std::int32_t)));
-    av_display_rotation_set(matrix, -*spec.clockwise_degrees);
+    av_display_rotation_set(matrix, *spec.clockwise_degrees);
   }
   require(avio_open(&writer.output->pb, name.c_str(), AVIO_FLAG_WRITE) >= 0, "file");
   require(avformat_write_header(writer.output, nullptr) >= 0, "header");
@@ -131,9 +133,12 @@ void write_video(const std::filesystem::path& path, const VideoSpec& spec) {
   const auto take_packets = [&] {
     while (avcodec_receive_packet(&codec, writer.packet) >= 0) {
       if (spec.damaged.contains(written)) {
-        std::memset(writer.packet->data, 0, static_cast<std::size_t>(writer.packet->size));
+        // Its frame stays, so that parsers find the next one.
+        const int half = writer.packet->size / 2;
+        std::memset(writer.packet->data + half, 0, static_cast<std::size_t>(half - 16));
       }
       ++written;
+      writer.packet->duration = kDuration_ms;
       av_packet_rescale_ts(writer.packet, codec.time_base, stream.time_base);
       require(av_interleaved_write_frame(writer.output, writer.packet) >= 0, "packet");
     }

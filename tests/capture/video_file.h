@@ -34,7 +34,7 @@ struct VideoSpec {
   std::vector<std::int64_t>
       stamps_ms;  ///< of every frame; negative ones are hidden by an edit list
   std::optional<double> clockwise_degrees;  ///< a display matrix
-  std::set<int> damaged;                    ///< frames whose data are zeros
+  std::set<int> damaged;                    ///< frames with zeros in their data
 
   /// Coded colour (R'G'B' in [0, 1]) of a frame's left and right half.
   std::function<Eigen::Vector3d(int frame, bool is_right)> colour;

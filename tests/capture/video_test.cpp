@@ -217,10 +217,15 @@ TEST(VideoFiles, DamagedFramesAreLeftOutAndCounted) {
   write_video(folder / "damaged.mkv", spec);
   const auto source = open_video(folder / "damaged.mkv", kSize, {}, std::nullopt);
   const auto frames = all_frames(*source);
-  ASSERT_EQ(frames.size(), 17u);
+  std::vector<int> indices;
+  for (const Frame& frame : frames) indices.push_back(frame.index);
+  std::vector<int> whole;
+  for (int i = 0; i < 20; ++i) {
+    if (!spec.damaged.contains(i)) whole.push_back(i);
+  }
+  EXPECT_EQ(indices, whole);
   for (const Frame& frame : frames) {
     // Those after a damaged one keep their places and times.
-    EXPECT_FALSE(spec.damaged.contains(frame.index));
     EXPECT_EQ(number_of(frame.image), frame.index);
     EXPECT_NEAR(frame.time_s, 0.04 * frame.index, 1e-6);
   }

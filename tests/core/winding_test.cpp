@@ -64,6 +64,15 @@ std::vector<std::array<std::uint32_t, 3>> turned_free(const Mesh& mesh) {
   return all;
 }
 
+/// Normals by corner of the triangles: a vertex that no triangle uses has no side.
+std::vector<Eigen::Vector3f> used_normals(const Mesh& mesh) {
+  std::vector<Eigen::Vector3f> normals;
+  for (const auto& triangle : turned_free(mesh)) {
+    for (const std::uint32_t corner : triangle) normals.push_back(mesh.normals[corner]);
+  }
+  return normals;
+}
+
 TEST(FaceCameras, OpenSurfacesTurnTheSideOutThatCamerasSee) {
   const Mesh right = bowl();
   const auto views = ring_of_cameras(kCamera, 3);
@@ -77,9 +86,7 @@ TEST(FaceCameras, OpenSurfacesTurnTheSideOutThatCamerasSee) {
       EXPECT_EQ(turned_free(mesh), turned_free(right));
       EXPECT_EQ(seen.turned_parts, winding ? 1u : 0u);
       EXPECT_NEAR(seen.back_share, winding ? 1 : 0, 0.1);
-      for (std::size_t i = 0; i < mesh.normals.size(); ++i) {
-        EXPECT_EQ(mesh.normals[i], right.normals[i]);
-      }
+      EXPECT_EQ(used_normals(mesh), used_normals(right));
     }
   }
 }
@@ -111,7 +118,7 @@ TEST(FaceCameras, PartsAreJudgedOneByOne) {
   const SeenSides seen = face_cameras(mesh, ring_of_cameras(kCamera, 3));
   EXPECT_EQ(seen.turned_parts, 1u);
   EXPECT_EQ(turned_free(mesh), turned_free(good));
-  EXPECT_EQ(mesh.normals, good.normals);
+  EXPECT_EQ(used_normals(mesh), used_normals(good));
 }
 
 TEST(FaceCameras, WithoutAViewNothingIsTurned) {
