@@ -8,7 +8,8 @@
 #include "capture/calibration/camera_images.h"
 #include "capture/calibration/coverage_image.h"
 #include "capture/pose/board_diagnosis.h"
-#include "capture/source/v4l2_camera.h"
+#include "capture/source/http_images.h"
+#include "capture/source/open_camera.h"
 #include "core/diagnostics/error.h"
 #include "core/image/write_image.h"
 
@@ -74,7 +75,13 @@ capture::CalibrationTarget target_of(const CalibrateOptions& options) {
 }
 
 bool is_device(const CalibrateOptions& options) {
-  return options.source.string().starts_with("/dev/");
+  const std::string source = options.source.string();
+  return source.starts_with("/dev/") || capture::is_network_address(source);
+}
+
+/// An address without its password.
+std::filesystem::path shown_source(const CalibrateOptions& options) {
+  return capture::shown_address(options.source.string());
 }
 
 /// A device is watched for a while; anything else is read to its end.
@@ -84,9 +91,7 @@ std::unique_ptr<capture::FrameSource> open_images(const CalibrateOptions& option
   }
   capture::V4l2CameraOptions camera;
   camera.device = options.source;
-  return capture::open_camera_images(
-      std::make_unique<capture::V4l2Camera>(capture::kernel_v4l2_system(), camera),
-      options.seconds);
+  return capture::open_camera_images(capture::open_camera(camera), options.seconds);
 }
 
 Candidates find_candidates(const CalibrateOptions& options, capture::TargetFinder& finder,
@@ -114,8 +119,8 @@ Candidates find_candidates(const CalibrateOptions& options, capture::TargetFinde
   const capture::SourceReport report = frames->report();
   for (const std::string& note : report.notes) context.note("note: " + note);
   if (report.damaged > 0) {
-    context.note(fmt::format("note: {}: {} damaged images were left out", options.source.string(),
-                             report.damaged));
+    context.note(fmt::format("note: {}: {} damaged images were left out",
+                             shown_source(options).string(), report.damaged));
   }
   return candidates;
 }
@@ -206,7 +211,7 @@ void diagnose_board(const CalibrateOptions& options, const Candidates& candidate
   // Of a lens that is not known yet nothing can be said.
   if (cause.suspect == capture::PoseSuspect::camera || !cause.is_sure) return;
   throw core::bad_input(
-      cause.suspect == capture::PoseSuspect::board ? options.board : options.source,
+      cause.suspect == capture::PoseSuspect::board ? options.board : shown_source(options),
       fmt::format("{}; {} of {} images show the target", cause.fault, candidates.views.size(),
                   candidates.frames),
       cause.remedy);
@@ -215,7 +220,7 @@ void diagnose_board(const CalibrateOptions& options, const Candidates& candidate
 [[noreturn]] void refuse(const CalibrateOptions& options, const Candidates& candidates,
                          const std::string& faults) {
   diagnose_board(options, candidates);
-  throw core::bad_input(options.source, "cannot be calibrated from: " + faults,
+  throw core::bad_input(shown_source(options), "cannot be calibrated from: " + faults,
                         "move the target through the whole image, near and far, tilted to all "
                         "sides by 30 degrees");
 }
@@ -274,8 +279,8 @@ void add_calibrate_command(CommandLine& program, CommandContext& context) {
       "near and far, tilted to all sides by 30 degrees and more.");
   command
       .option("source", options->source,
-              "Video, folder of images, session folder (its recording is taken), or a camera's "
-              "device such as /dev/video0")
+              "Video, folder of images, session folder (its recording is taken), or a camera: a "
+              "device such as /dev/video0, the address of an MJPEG stream")
       .required();
   command.option("-o,--output", options->output, "Camera file to write")
       .required()

@@ -7,6 +7,8 @@
 #include "app/preview/run_preview.h"
 #include "capture/session/camera_recording.h"
 #include "capture/session/session.h"
+#include "capture/source/http_images.h"
+#include "capture/source/open_camera.h"
 #include "core/diagnostics/error.h"
 #include "pipeline/session_mesh.h"
 
@@ -111,9 +113,11 @@ void run_capture(const CaptureOptions& options, const CommandContext& context) {
   watched.fit.preview = !options.headless;
   capture::V4l2CameraOptions wish = options.camera;
   const core::CameraModel model = read_setup(options).camera;
-  if (!wish.mode.size) wish.mode.size = capture::ImageSize{model.width_px(), model.height_px()};
-  capture_session(std::make_unique<capture::V4l2Camera>(capture::kernel_v4l2_system(), wish),
-                  watched, context);
+  const bool is_near = !capture::is_network_address(wish.device.string());
+  if (is_near && !wish.mode.size) {
+    wish.mode.size = capture::ImageSize{model.width_px(), model.height_px()};
+  }
+  capture_session(capture::open_camera(wish), watched, context);
 }
 
 }  // namespace
@@ -158,7 +162,11 @@ void add_capture_command(CommandLine& program, CommandContext& context) {
       program.command("capture", "Record an object live and turn it into a light field");
   command.example(
       "Example: walk round the object until Ctrl-C, with the board of an earlier session:\n"
-      "  sheen capture /dev/video0 -o knot --like sample_data/glossy --headless");
+      "  sheen capture /dev/video0 -o knot --like sample_data/glossy --headless\n"
+      "A phone whose app serves its camera as MJPEG:\n"
+      "  sheen capture http://192.168.1.20:8080/video -o knot --camera phone.yaml --board "
+      "board.yaml "
+      "--mesh knot.ply");
   add_capture_options(command, *options);
   add_common_options(command, context);
   command.action([options, &context] { run_capture(*options, context); });

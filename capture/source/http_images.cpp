@@ -69,7 +69,7 @@ bool is_network_address(const std::string& address) {
 
 std::string shown_address(const std::string& address) {
   const std::size_t scheme = address.find("://");
-  if (scheme == std::string::npos) return core::quotable(address, 200);
+  if (scheme == std::string::npos) return address;
   const std::size_t begin = scheme + 3;
   const std::size_t end = std::min(address.find_first_of("/?#", begin), address.size());
   const std::size_t at = address.rfind('@');

@@ -28,7 +28,8 @@ class NetworkFault : public std::runtime_error {
 /// Whether an address names a camera in the network: http://, https:// or rtsp://.
 bool is_network_address(const std::string& address);
 
-/// The address as it may stand in messages and files: without user, password and query.
+/// The address as it may stand in messages and files: without user, password and query. Names of
+/// files and devices stay as they are.
 std::string shown_address(const std::string& address);
 
 /// JPEG images that a server sends one after the other (multipart/x-mixed-replace), as phones and

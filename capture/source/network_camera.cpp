@@ -14,7 +14,6 @@ namespace {
 
 constexpr double kNominalFps = 30;  // servers state none; the recording's own stamps win
 constexpr std::size_t kMostWaitingBytes = std::size_t{64} << 20;
-constexpr double kStale_s = 0.001;    // an image that was there at once was made before
 constexpr double kMostStale_s = 0.5;  // but a server faster than we ask never runs dry
 constexpr auto kRetry = std::chrono::milliseconds(300);
 
@@ -103,13 +102,14 @@ void NetworkCamera::receive_from_one_connection(const std::stop_token& stop) {
     std::vector<std::uint8_t> jpeg;
     const bool is_whole = images.next(jpeg);
     const double arrival_s = steady_now_s();
+    is_stale = is_stale && arrival_s - waiting_s < options_.stale_s &&
+               arrival_s - connected_s < kMostStale_s;
+    if (is_stale) continue;
     until_s = arrival_s + options_.silence_s;
-    is_stale =
-        is_stale && arrival_s - waiting_s < kStale_s && arrival_s - connected_s < kMostStale_s;
-    if (!is_whole) {
-      note_damaged();
-    } else if (!is_stale) {
+    if (is_whole) {
       take(std::move(jpeg), arrival_s);
+    } else {
+      note_damaged();
     }
   }
 }

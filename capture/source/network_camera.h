@@ -22,6 +22,8 @@ struct NetworkCameraOptions {
   double answer_s = 10;     ///< > 0, how long a server may take to answer and send an image
   double silence_s = 5;     ///< > 0, without an image a connection counts as broken
   double reconnect_s = 30;  ///< >= 0, how long a camera that went away may stay away
+  /// After connecting, an image that comes within so short a wait lay ready before and is dropped.
+  double stale_s = 0.001;
 };
 
 /// A phone or another camera that serves JPEG images over HTTP. A thread of its own takes every

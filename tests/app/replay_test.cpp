@@ -179,7 +179,9 @@ double missing_from(const Samples& b, const Samples& a) {
 // Where the z-buffer's word is in doubt it asks the rays, so that both say the same.
 TEST(Replay, ZBufferIsTheDefaultAndGivesTheSamplesOfRays) {
   const Samples by_default = samples_with({});
-  EXPECT_TRUE(by_default == samples_with(core::make_raster_visibility));
+  EXPECT_TRUE(by_default == samples_with([](const core::Mesh& mesh, int threads) {
+                return core::make_raster_visibility(mesh, threads);
+              }));
   EXPECT_TRUE(by_default == samples_with(core::make_ray_visibility));
 }
 
