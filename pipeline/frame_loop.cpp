@@ -39,6 +39,10 @@ class PoseThread {
     frames_.close();
   }
 
+  /// Filled by `thread_`. What waits when the stage ends or fails is delivered, then the failure is
+  /// thrown. Whoever leaves before gives up what waits; the thread ends with the frame it is
+  /// posing, for which a camera may keep it waiting as long as that has patience
+  /// (V4l2CameraOptions).
   core::BoundedQueue<TrackedFrame> frames_;
   std::exception_ptr failure_;
   std::jthread thread_;

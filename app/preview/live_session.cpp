@@ -191,6 +191,9 @@ void LiveSession::save() {
 void LiveSession::finish() {
   {
     const std::lock_guard lock(mutex_);
+    if (std::exchange(requests_.undo_s, 0) > 0) {
+      status_.note = "Nothing was taken back: the recording was over";
+    }
     status_.phase = LiveStatus::Phase::finished;
   }
   wake();

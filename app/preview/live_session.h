@@ -50,7 +50,8 @@ class LiveSession final : public pipeline::FrameListener {
   /// After every frame: tells the window, waits while paused, does what was asked for.
   void on_frame(const pipeline::TrackedFrame& tracked,
                 const pipeline::FrameStatistics& statistics) override;
-  /// The last frame was fitted; requests are no longer heard.
+  /// The last frame was fitted. Requests are no longer heard: an undo that came too late is told, a
+  /// save would give the model that the program writes at its end.
   void finish();
 
   // The window's side, from any thread.

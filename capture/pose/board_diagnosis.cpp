@@ -120,7 +120,7 @@ void BoardDiagnosis::Impl::look_for_others(const cv::Mat& grey) {
     if (board.family == print.family && board.border_bits == print.border_bits) continue;
     const auto family = find_tag_family(print.family, print.border_bits);
     const bool is_small_code = family && family->library == TagFamily::Library::aruco;
-    if (!family || drop_ambiguous(TagDetector(*family).detect(grey)).size() <
+    if (!family || drop_ambiguous(TagDetector(*family, 0).detect(grey)).size() <
                        (is_small_code ? 2 * kFewTags : kFewTags)) {
       continue;
     }

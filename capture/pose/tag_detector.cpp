@@ -20,11 +20,10 @@ class TagDetector::Implementation {
 
 class TagDetector::AprilTag : public Implementation {
  public:
-  explicit AprilTag(const TagFamily& family)
+  AprilTag(const TagFamily& family, int corrected_bits)
       : codes_(*AprilTagFamily::find(family.name)),
         detector_(apriltag_detector_create(), apriltag_detector_destroy) {
-    // More than two corrected bits need hundreds of megabytes of tables and invent tags.
-    apriltag_detector_add_family_bits(detector_.get(), codes_.get(), 2);
+    apriltag_detector_add_family_bits(detector_.get(), codes_.get(), corrected_bits);
     detector_->nthreads = 1;  // results must not depend on threads
     detector_->refine_edges = true;
   }
@@ -100,9 +99,9 @@ class TagDetector::Aruco : public Implementation {
   cv::Ptr<cv::aruco::DetectorParameters> parameters_;
 };
 
-TagDetector::TagDetector(const TagFamily& family) {
+TagDetector::TagDetector(const TagFamily& family, int corrected_bits) {
   if (family.library == TagFamily::Library::apriltag) {
-    implementation_ = std::make_unique<AprilTag>(family);
+    implementation_ = std::make_unique<AprilTag>(family, corrected_bits);
   } else {
     implementation_ = std::make_unique<Aruco>(family);
   }

@@ -24,7 +24,10 @@ struct TagDetection {
 /// Finds the tags of one family in 8-bit images. Move-only; one thread at a time.
 class TagDetector {
  public:
-  explicit TagDetector(const TagFamily& family);
+  /// Codes of libapriltag's families are corrected by up to `corrected_bits`: more than two need
+  /// hundreds of megabytes of tables and invent tags, two need a gigabyte and ten seconds for the
+  /// largest families.
+  explicit TagDetector(const TagFamily& family, int corrected_bits = 2);
   ~TagDetector();
   TagDetector(const TagDetector&) = delete;
   TagDetector& operator=(const TagDetector&) = delete;

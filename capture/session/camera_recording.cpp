@@ -104,6 +104,7 @@ void CameraRecording::record(const std::stop_token& stop) {
   try {
     while (!stop.stop_requested() && !is_over()) {
       if (const auto buffer = camera_->next(kPatience)) take(*buffer);
+      report_disk_fault();  // also while the camera is silent
     }
   } catch (const core::Error& error) {
     const std::lock_guard lock(mutex_);

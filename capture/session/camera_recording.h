@@ -82,6 +82,10 @@ class CameraRecording {
   mutable std::mutex mutex_;
   std::condition_variable has_unrecorded_;
   RecordingStatus status_;
+  /// After a fault of the disk, the newest images, which the recorder no longer takes. Filled by
+  /// `thread_`, emptied by whoever calls `next` of `frames`: what is there when the camera ends is
+  /// still delivered, and ends with the reader who leaves before. Older ones are not in the file,
+  /// which the status tells (`taken` against `recorded`).
   std::deque<LiveImage> unrecorded_;
   std::jthread thread_;  ///< last: it uses all of the above
 };

@@ -86,6 +86,9 @@ class SessionRecorder {
 
   mutable std::mutex mutex_;
   mutable std::condition_variable has_news_;
+  /// Filled by `add`, emptied by `writer_`. `close` lets the writer write all of it first; a fault
+  /// of the disk stops the writer, and what waits goes to `next_unwritten`, the image that met the
+  /// fault before the others. Without a reader it is lost with the recorder.
   std::deque<LiveImage> waiting_;
   std::size_t waiting_bytes_ = 0;
   bool is_writing_ = false;               ///< an image is neither in `waiting_` nor in the file

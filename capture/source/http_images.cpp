@@ -139,12 +139,13 @@ HttpImages::HttpImages(const std::string& address, std::function<bool()> gives_u
   impl_->gives_up = std::move(gives_up);
   impl_->connect(address);
   impl_->check_kind();
-  impl_->read_first_boundary();
 }
 
 HttpImages::~HttpImages() = default;
 
 bool HttpImages::next(std::vector<std::uint8_t>& jpeg) {
+  // Not before: it waits for the first image, and that wait tells a fresh one from a stale one.
+  if (!impl_->input) impl_->read_first_boundary();
   AVPacket& packet = *impl_->packet;
   const int status = av_read_frame(impl_->input.get(), &packet);
   if (status == AVERROR_EXIT) {

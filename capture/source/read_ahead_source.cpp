@@ -67,6 +67,9 @@ class ReadAheadSource : public FrameSource {
   std::optional<int> frame_count_;
   mutable std::mutex report_mutex_;
   SourceReport report_;  ///< of the source, by the frame read last
+  /// Filled by `reader_`. A fault of the source stands in the queue behind the frames before it, so
+  /// that those are delivered first; the end of the source closes it, and what waits is delivered.
+  /// Whoever destroys this gives up what waits; the reader then ends with the frame it is reading.
   core::BoundedQueue<std::variant<Frame, std::exception_ptr>> frames_{kMostWaiting};
   std::jthread reader_;  ///< last: it uses all of the above
 };

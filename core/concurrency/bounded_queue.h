@@ -11,8 +11,10 @@
 namespace sheen::core {
 
 /// First in, first out between threads, holding at most `capacity` (>= 1) items: a fast producer
-/// waits for the consumer, so memory stays bounded and nothing is dropped. Either side may `close`;
-/// what was pushed before can still be popped. All members may be called from any thread.
+/// waits for the consumer, so memory stays bounded and nothing is dropped. Either side may `close`:
+/// what was pushed before can still be popped, what is pushed after is refused, and whoever waits
+/// wakes. A fault of either side is not told by the queue: owners say where it stands. All members
+/// may be called from any thread.
 template <typename T>
 class BoundedQueue {
  public:

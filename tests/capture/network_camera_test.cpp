@@ -289,6 +289,38 @@ TEST(NetworkCamera, IsRecordedAsItsBytes) {
   }
 }
 
+TEST(NetworkCamera, TakesWhatFfmpegServes) {
+  const FfmpegServer server(2);
+  if (!server.is_there()) GTEST_SKIP() << "ffmpeg is not installed";
+  // It listens a moment after it has started.
+  const auto deadline = std::chrono::steady_clock::now() + kLong;
+  std::unique_ptr<NetworkCamera> camera;
+  while (!camera && std::chrono::steady_clock::now() < deadline) {
+    try {
+      NetworkCameraOptions options;
+      options.address = server.address();
+      options.reconnect_s = 0;
+      camera = std::make_unique<NetworkCamera>(options);
+    } catch (const core::Error&) {
+    }
+  }
+  ASSERT_TRUE(camera);
+  EXPECT_EQ(camera->description().width_px, 64);
+  int images = 0;
+  double first_s = 0, last_s = 0;
+  try {
+    while (const auto buffer = camera->next(kLong)) {
+      if (images++ == 0) first_s = buffer->time_s;
+      last_s = buffer->time_s;
+    }
+  } catch (const core::Error&) {
+  }
+  EXPECT_GE(images, 58);  // 60 but for what lay ready or stood in the last piece
+  EXPECT_EQ(camera->counts().damaged, 0);
+  // 30 a second, to a fifth on a busy machine.
+  EXPECT_NEAR((last_s - first_s) / (images - 1), 1 / 30.0, 0.2 / 30);
+}
+
 TEST(OpenCamera, RefusesWhatANetworkCameraDoesNotTake) {
   V4l2CameraOptions wish;
   wish.device = "http://me:secret@127.0.0.1:9/video";

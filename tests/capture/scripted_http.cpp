@@ -3,10 +3,13 @@
 
 #include <arpa/inet.h>
 #include <netinet/in.h>
+#include <spawn.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
+#include <csignal>
 #include <stdexcept>
 
 namespace sheen::capture::test {
@@ -104,6 +107,44 @@ void ScriptedHttp::serve() {
   }
   const std::lock_guard lock(mutex_);
   if (!is_over_) ::shutdown(listener_, SHUT_RDWR);
+}
+
+FfmpegServer::FfmpegServer(int seconds) {
+  {
+    const ScriptedHttp free({});  // a port that nobody uses
+    address_ = free.address();
+    address_.resize(address_.find('?'));
+  }
+  const std::string length = std::to_string(seconds);
+  std::vector<std::string> words = {"ffmpeg",
+                                    "-v",
+                                    "quiet",
+                                    "-re",
+                                    "-f",
+                                    "lavfi",
+                                    "-t",
+                                    length,
+                                    "-i",
+                                    "testsrc=size=64x48:rate=30",
+                                    "-f",
+                                    "mpjpeg",
+                                    "-content_type",
+                                    "multipart/x-mixed-replace;boundary=ffmpeg",
+                                    "-listen",
+                                    "1",
+                                    address_};
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  if (posix_spawnp(&process_, "ffmpeg", nullptr, nullptr, arguments.data(), environ) != 0) {
+    process_ = -1;
+  }
+}
+
+FfmpegServer::~FfmpegServer() {
+  if (process_ <= 0) return;
+  ::kill(process_, SIGKILL);
+  ::waitpid(process_, nullptr, 0);
 }
 
 }  // namespace sheen::capture::test

@@ -64,4 +64,24 @@ class ScriptedHttp {
   std::jthread thread_;
 };
 
+/// FFmpeg's own server, another program: serves `seconds` of a test pattern of 64 x 48 at 30 images
+/// a second to its first client. Killed with this object.
+class FfmpegServer {
+ public:
+  explicit FfmpegServer(int seconds);
+  ~FfmpegServer();
+  FfmpegServer(const FfmpegServer&) = delete;
+  FfmpegServer& operator=(const FfmpegServer&) = delete;
+  FfmpegServer(FfmpegServer&&) = delete;
+  FfmpegServer& operator=(FfmpegServer&&) = delete;
+
+  /// False where the program is not installed.
+  [[nodiscard]] bool is_there() const { return process_ > 0; }
+  [[nodiscard]] const std::string& address() const { return address_; }
+
+ private:
+  int process_ = -1;
+  std::string address_;
+};
+
 }  // namespace sheen::capture::test

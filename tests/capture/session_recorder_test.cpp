@@ -16,6 +16,7 @@
 #include <chrono>
 #include <csignal>
 #include <fstream>
+#include <future>
 #include <new>
 #include <random>
 
@@ -285,6 +286,17 @@ TEST(CameraRecording, GoesOnWithoutTheDisk) {
   EXPECT_EQ(reports, 1);
   EXPECT_GT(frames, 7);  // the image that met the full disk at least
   EXPECT_EQ(count_frames(open_session(folder)), 7);
+}
+
+TEST(CameraRecording, TellsAFullDiskWhileTheCameraIsSilent) {
+  const TemporaryFolder scratch;
+  SessionRecorder recorder(scratch.path() / "walk", recording_setup(scratch), kFps);
+  std::promise<void> told;
+  const FullDisk full(5000 + 7 * (kCameraBytes + 10) + kCameraBytes / 2);
+  // The eighth image meets the full disk, and no other comes.
+  CameraRecording recording(std::make_unique<CountingCamera>(8), recorder,
+                            {.on_disk_fault = [&](const core::Error&) { told.set_value(); }});
+  EXPECT_EQ(told.get_future().wait_for(std::chrono::seconds(20)), std::future_status::ready);
 }
 
 TEST(CameraRecording, ReportsAFaultThatIsFoundAfterTheLastImage) {
