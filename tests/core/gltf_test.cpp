@@ -243,7 +243,8 @@ TEST_F(GltfTest, PackedByDracoIsTheSameSurfaceToItsSteps) {
   const float step = 2.0f / ((1 << bits) - 1);
   for (const auto& position : mesh.positions) EXPECT_NEAR(position.norm(), 1, 0.87f * step + 1e-6f);
   // Edges are about 0.45 long; each end moves by 0.87 of a step.
-  EXPECT_NEAR(area_of(mesh), area_of(sphere_), area_of(sphere_) * 4 * 0.87 * static_cast<double>(step) / 0.45);
+  EXPECT_NEAR(area_of(mesh), area_of(sphere_),
+              area_of(sphere_) * 4 * 0.87 * static_cast<double>(step) / 0.45);
 }
 
 TEST_F(GltfTest, AlteredDracoDataIsRefusedOrReadNeverMore) {
