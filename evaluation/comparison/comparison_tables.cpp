@@ -6,7 +6,9 @@
 namespace sheen::evaluation {
 namespace {
 
+/// None for models without patches.
 double coefficients_per_patch(const Measurement& measured) {
+  if (measured.patches == 0) return 0;
   return static_cast<double>(measured.coefficients) / static_cast<double>(measured.patches);
 }
 

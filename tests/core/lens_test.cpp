@@ -102,9 +102,12 @@ TEST(Lens, SamplingLoopsProjectLikeTheCamera) {
     for (std::size_t i = 0; i < mesh.positions.size() / 3 * 3; ++i) {
       const auto pixel = camera.project(mesh.positions[i].cast<double>());
       ASSERT_TRUE(pixel);
-      // Six digits of a single-precision ray, times a focal length of 410 px and the arc tangent.
-      EXPECT_NEAR(static_cast<double>(view.x_px[i]), pixel->x(), 2e-3);
-      EXPECT_NEAR(static_cast<double>(view.y_px[i]), pixel->y(), 2e-3);
+      // Six digits of a single-precision ray, times a focal length of 410 px and the arc tangent;
+      // far outside the image, where a lens may throw a ray, the seventh power of its radius takes
+      // seven roundings of 2^-24 from it and makes about as many on the way.
+      const double within = 2e-3 + pixel->norm() * 14 * 0x1p-24;
+      EXPECT_NEAR(static_cast<double>(view.x_px[i]), pixel->x(), within);
+      EXPECT_NEAR(static_cast<double>(view.y_px[i]), pixel->y(), within);
     }
   }
 }
