@@ -6,7 +6,6 @@
 #include "core/geometry/principal_axes.h"
 #include "core/mesh/bounds.h"
 
-
 #include <algorithm>
 #include <cmath>
 #include <locale>

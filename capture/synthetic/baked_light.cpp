@@ -163,7 +163,8 @@ std::vector<Incident> bake_incident(const Studio& studio, const core::Mesh& obje
   const Probe probe(studio, caster);
   const auto board_radiance = [&](const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) {
     const Eigen::Vector3f foot = origin - origin.z() / direction.z() * direction;
-    return Eigen::Vector3f(board_reflectance / std::numbers::pi_v<float> * ground.irradiance(foot.x(), foot.y()));
+    return Eigen::Vector3f(board_reflectance / std::numbers::pi_v<float> *
+                           ground.irradiance(foot.x(), foot.y()));
   };
   std::vector<Incident> incident(object.positions.size());
   core::parallel_for(incident.size(), threads, [&](std::size_t begin, std::size_t end) {

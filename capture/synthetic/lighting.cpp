@@ -8,7 +8,6 @@
 namespace sheen::capture::synthetic {
 namespace {
 
-
 SoftBox soft_box(float azimuth_deg, float elevation_deg, float radius_deg,
                  const Eigen::Vector3f& irradiance) {
   const float azimuth = azimuth_deg * std::numbers::pi_v<float> / 180;
@@ -91,7 +90,8 @@ Eigen::Vector3f reflected_radiance(const Brdf& brdf, const Eigen::Vector3f& norm
 
   // Add the room: diffusely, and mirrored at the strength of the Fresnel term.
   const float fresnel = brdf.specular > 0 ? schlick(brdf.specular, cos_eye) : 0.0f;
-  radiance += (1 - fresnel) * brdf.albedo.cwiseProduct(incident.ambient_irradiance) / std::numbers::pi_v<float>;
+  radiance += (1 - fresnel) * brdf.albedo.cwiseProduct(incident.ambient_irradiance) /
+              std::numbers::pi_v<float>;
   if (fresnel > 0) {
     const Eigen::Vector3f mirrored = 2 * cos_eye * normal - towards_eye;
     radiance += fresnel * incident.openness * room_radiance(studio, mirrored);

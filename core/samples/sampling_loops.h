@@ -14,7 +14,9 @@ namespace sheen::core::SHEEN_LANES {
 // The lenses, once more for these instructions.
 using Real = float;
 
-inline float sqrt(float x) { return __builtin_sqrtf(x); }
+inline float sqrt(float x) {
+  return __builtin_sqrtf(x);
+}
 
 /// Arc tangent of x >= 0, to 2e-7: a polynomial below tan(pi/8), else turned there by atan(x) =
 /// pi/4 + atan((x - 1) / (x + 1)) or pi/2 - atan(1 / x).

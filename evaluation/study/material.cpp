@@ -9,7 +9,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-
 Vector3f random_colour(Random& random, float low, float high) {
   return {random.uniform(low, high), random.uniform(low, high), random.uniform(low, high)};
 }
@@ -89,8 +88,8 @@ Vector3f reflectance(const Material& material, const Vector3f& light, const Vect
   const float x = half.x() / material.alpha_x;
   const float y = half.y() / material.alpha_y;
   const float stretched = x * x + y * y + half.z() * half.z();
-  const float distribution =
-      1.0f / (std::numbers::pi_v<float> * material.alpha_x * material.alpha_y * stretched * stretched);
+  const float distribution = 1.0f / (std::numbers::pi_v<float> * material.alpha_x *
+                                     material.alpha_y * stretched * stretched);
   const float shadowing =
       1.0f / (1.0f + smith_lambda(material, light) + smith_lambda(material, view));
   const float m = 1.0f - half.dot(view);

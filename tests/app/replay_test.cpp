@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iostream>
 #include <map>
 #include <utility>
 
@@ -187,7 +186,7 @@ TEST(Replay, ZBufferIsTheDefaultAndGivesTheSamplesOfRays) {
 }
 
 // OpenGL's depths are those of pixel centres: next to silhouettes a vertex may fall to either side.
-// Against rays XX and YY of the samples were measured.
+// Measured: .015 % of the rays' samples are hidden, and .95 % of the z-buffer's are not the rays'.
 TEST(Replay, DepthsOfOpenGlGiveNearlyTheSamplesOfRays) {
   const auto gl = render::make_osmesa_context();
   const Samples depth = samples_with([&](const core::Mesh& mesh, int /*threads*/) {
@@ -196,9 +195,8 @@ TEST(Replay, DepthsOfOpenGlGiveNearlyTheSamplesOfRays) {
   const Samples rays = samples_with(core::make_ray_visibility);
   const double false_hidden = missing_from(depth, rays);
   const double false_visible = missing_from(rays, depth);
-  std::cout << "hidden " << false_hidden << " visible " << false_visible << "\n";
-  EXPECT_LT(false_hidden, 3 * 0.001);
-  EXPECT_LT(false_visible, 3 * 0.01);
+  EXPECT_LT(false_hidden, 3 * 0.00015);
+  EXPECT_LT(false_visible, 3 * 0.0095);
 }
 
 TEST(Replay, OptionsForVisibilityAreObeyed) {

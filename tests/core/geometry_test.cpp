@@ -121,10 +121,11 @@ CameraModel rational_camera(std::array<double, 8> distortion) {
   return CameraModel({640, 480, {611.5, 609.25}, {318.75, 242.5}, distortion});
 }
 
-const std::vector<std::array<double, 8>> kDistortions = {{-0.28, 0.07, 1e-3, -5e-4},
-                                                    {0.12, -0.25, -7e-4, 4e-4, 0.11},
-                                                    {0.5, -0.1, 1e-3, 2e-4, 0.02, 0.6, -0.08, 0.01},
-                                                    {}};
+const std::vector<std::array<double, 8>> kDistortions = {
+    {-0.28, 0.07, 1e-3, -5e-4},
+    {0.12, -0.25, -7e-4, 4e-4, 0.11},
+    {0.5, -0.1, 1e-3, 2e-4, 0.02, 0.6, -0.08, 0.01},
+    {}};
 
 TEST_F(Camera, AgreesWithOpenCv) {
   for (const auto& lens : kDistortions) {
