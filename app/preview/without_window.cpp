@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // In place of the window where the build leaves it out (SHEEN_WINDOW off).
 #include "app/preview/run_preview.h"
-
 #include "core/diagnostics/error.h"
 
 namespace sheen::app {

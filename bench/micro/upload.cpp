@@ -68,8 +68,7 @@ void view_scattered(benchmark::State& state) {
 void view_within_budget(benchmark::State& state) {
   auto patches = runs(8, 4);
   const std::size_t patch_bytes = uploaded().shader->upload(std::span(patches).first(1));
-  patches.resize(
-      std::min(patches.size(), static_cast<std::size_t>(state.range(0)) / patch_bytes));
+  patches.resize(std::min(patches.size(), static_cast<std::size_t>(state.range(0)) / patch_bytes));
   upload(state, patches);
 }
 

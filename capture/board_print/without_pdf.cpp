@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // In place of board_pdf.cpp where the build leaves it out (SHEEN_BOARD_PDF off).
 #include "capture/board_print/board_pdf.h"
-
 #include "core/diagnostics/error.h"
 
 namespace sheen::capture {

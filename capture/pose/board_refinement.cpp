@@ -74,8 +74,7 @@ class Adjustment {
   }
 
   Adjustment(const Board& board, core::LensKind kind, LensParameters& lens,
-             std::vector<PosedView>& views,
-             std::map<int, Parameters>& tags) {
+             std::vector<PosedView>& views, std::map<int, Parameters>& tags) {
     for (PosedView& view : views) {
       for (const TagDetection& tag : view.tags) {
         problem_.AddResidualBlock(tag_and_lens_residual(kind, tag, board.tags.at(tag.id).size_m),

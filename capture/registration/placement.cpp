@@ -8,7 +8,6 @@
 #include "core/mesh/bounds.h"
 #include "core/text/number.h"
 
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -18,7 +17,7 @@
 namespace sheen::capture {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxPlacementBytes = std::size_t{1} << 20;
 constexpr std::size_t kMinPairs = 3;
 constexpr double kFarthestM = 1e9;    // meshes may lie in survey coordinates
 constexpr double kMostStretch = 1.3;  // of the points' spread on the board over that in the mesh
@@ -58,7 +57,7 @@ std::optional<PointPair> parse_line(std::string line, const std::filesystem::pat
 }  // namespace
 
 std::vector<PointPair> read_point_pairs(const std::filesystem::path& path) {
-  std::istringstream lines(read_text_file(path, kMaxBytes));
+  std::istringstream lines(read_text_file(path, kMaxPlacementBytes));
   std::vector<PointPair> pairs;
   int number = 0;
   for (std::string line; std::getline(lines, line);) {

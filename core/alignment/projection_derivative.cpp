@@ -11,7 +11,8 @@ Eigen::Matrix2d distortion_derivative(const CameraModel::Intrinsics& intrinsics,
                                       const Eigen::Vector2d& ideal) {
   Dual u;
   Dual v;
-  distort(intrinsics.lens, intrinsics.distortion.data(), Dual(ideal.x(), 1, 0), Dual(ideal.y(), 0, 1), u, v);
+  distort(intrinsics.lens, intrinsics.distortion.data(), Dual(ideal.x(), 1, 0),
+          Dual(ideal.y(), 0, 1), u, v);
   Eigen::Matrix2d J;
   J << u.dx, u.dy, v.dx, v.dy;
   return J;
@@ -29,9 +30,8 @@ std::optional<ProjectedPoint> project_with_derivative(const CameraModel& camera,
   Eigen::Matrix<double, 2, 3> ideal_by_point;
   ideal_by_point << inverse_depth, 0, -ideal.x() * inverse_depth,  //
       0, inverse_depth, -ideal.y() * inverse_depth;
-  return ProjectedPoint{*pixel,
-                        lens.focal_px.asDiagonal() *
-                            (distortion_derivative(lens, ideal) * ideal_by_point)};
+  return ProjectedPoint{
+      *pixel, lens.focal_px.asDiagonal() * (distortion_derivative(lens, ideal) * ideal_by_point)};
 }
 
 }  // namespace sheen::core

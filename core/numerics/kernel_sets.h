@@ -5,10 +5,11 @@
 
 namespace sheen::core {
 
-/// Whether this processor runs what was compiled for AVX2 and half floats.
+/// Whether this processor runs what was compiled for AVX2 and half floats (F16C, which is older:
+/// all that have AVX2 have it).
 inline bool processor_has_avx2() {
 #ifdef SHEEN_HAS_AVX2_KERNELS
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("f16c");
+  return __builtin_cpu_supports("avx2");
 #else
   return false;
 #endif

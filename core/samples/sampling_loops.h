@@ -7,6 +7,7 @@
 
 #include "core/samples/sampling_kernels.h"
 
+#include <cstddef>
 #include <cstdint>
 
 namespace sheen::core::SHEEN_LANES {
@@ -14,7 +15,9 @@ namespace sheen::core::SHEEN_LANES {
 // The lenses, once more for these instructions.
 using Real = float;
 
-inline float sqrt(float x) { return __builtin_sqrtf(x); }
+inline float sqrt(float x) {
+  return __builtin_sqrtf(x);
+}
 
 /// Arc tangent of x >= 0, to 2e-7: a polynomial below tan(pi/8), else turned there by atan(x) =
 /// pi/4 + atan((x - 1) / (x + 1)) or pi/2 - atan(1 / x).
@@ -154,8 +157,8 @@ inline void fetch_pixels(const ImageView& image, const ReadingColumns& c, std::s
     const auto y = static_cast<std::int32_t>(y_px);
     block.right[s] = x_px - static_cast<float>(x);
     block.down[s] = y_px - static_cast<float>(y);
-    const std::uint8_t* upper =
-        image.pixels + static_cast<std::size_t>(y) * image.row_bytes + 3 * x;
+    const std::uint8_t* upper = image.pixels + static_cast<std::size_t>(y) * image.row_bytes +
+                                static_cast<std::ptrdiff_t>(3 * x);
     const std::uint8_t* lower = upper + image.row_bytes;
     block.upper_left[s] = word_at(upper);
     block.upper_right[s] = word_at(upper + 2) >> 8;
@@ -181,7 +184,7 @@ inline void blend_channel(const PixelBlock& block, int shift, std::size_t count,
 }
 
 inline void read(const ImageView& image, const ReadingColumns& c, std::size_t count) {
-  PixelBlock block;
+  PixelBlock block;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled before it is read
   for (std::size_t first = 0; first < count; first += kBlock) {
     const std::size_t size = count - first < kBlock ? count - first : kBlock;
     fetch_pixels(image, c, first, size, block);

@@ -115,7 +115,7 @@ SHEEN_INLINE void set_edge(Setup& s, int edge, const Corner& p, const Corner& q,
 
 SHEEN_INLINE Setup set_up(const Corner& p0, const Corner& p2, const Corner& p1, float large_px,
                           const DepthMap& map) {
-  Setup s;
+  Setup s;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
   // Which pixel centres the triangle may cover.
   const Floats left = least(p0.x, least(p1.x, p2.x));
   const Floats right = most(p0.x, most(p1.x, p2.x));

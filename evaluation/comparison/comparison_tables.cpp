@@ -6,7 +6,9 @@
 namespace sheen::evaluation {
 namespace {
 
+/// None for models without patches.
 double coefficients_per_patch(const Measurement& measured) {
+  if (measured.patches == 0) return 0;
   return static_cast<double>(measured.coefficients) / static_cast<double>(measured.patches);
 }
 
@@ -84,12 +86,9 @@ std::string to_csv(const Comparison& comparison) {
     std::string names;
     std::string values;
     for (const auto& [name, value] : fields.items()) {
-      if (!names.empty()) {
-        names += ',';
-        values += ',';
-      }
-      names += name;
-      values += csv_value(value);
+      const char* const separator = names.empty() ? "" : ",";
+      names.append(separator).append(name);
+      values.append(separator).append(csv_value(value));
     }
     if (csv.empty()) csv = names + '\n';
     csv += values + '\n';

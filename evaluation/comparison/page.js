@@ -31,7 +31,7 @@
     { key: "psnr", name: "PSNR, dB", text: (v) => digits(v, 2) },
     { key: "ssim", name: "SSIM", text: (v) => digits(v, 4) },
     { key: "rmse", name: "RMSE", text: (v) => digits(v, 4), least: true },
-    { key: "coefficients_per_patch", name: "Numbers", text: (v) => digits(v, 1), least: true },
+    { key: "coefficients_per_patch", name: "Numbers", text: (v) => v ? digits(v, 1) : "–", least: true },
     { key: "model_bytes", name: "Size", text: bytes, least: true },
     { key: "fit_ms_per_frame", name: "Fit, a frame", text: milliseconds, least: true },
     { key: "fit_ms", name: "Fit, in all", text: milliseconds, least: true },
@@ -204,7 +204,8 @@
     const rows = [...state.view.rows].sort((a, b) => sign * (typeof a[state.sort] === "string"
       ? a[state.sort].localeCompare(b[state.sort]) : a[state.sort] - b[state.sort]));
     const best = Object.fromEntries(columns.slice(1).map((column) => [column.key,
-      Math[column.least ? "min" : "max"](...rows.map((row) => row[column.key]))]));
+      column.least ? Math.min(...rows.map((row) => row[column.key] || Infinity))  // 0: there is none
+                   : Math.max(...rows.map((row) => row[column.key]))]));
     const body = table.createTBody();
     for (const row of rows) {
       const line = body.insertRow();

@@ -269,7 +269,6 @@ TEST_F(AddedRepresentation, IsReconstructedFromTheImages) {
         std::max(worst, static_cast<double>((frames[i].rgb - sampled[i]).cwiseAbs().maxCoeff()));
     EXPECT_GT(sampled[i].minCoeff(), 0.05f);
   }
-  std::cout << "worst difference of a mean colour " << worst << "\n";
   EXPECT_LT(worst, 0.01);
 
   // Its option arrives.

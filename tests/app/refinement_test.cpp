@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <numbers>
 #include <random>
 
 namespace sheen::tests {
@@ -82,6 +84,45 @@ TEST(RefinePoses, LeavesGoodTagPosesGood) {
                               poses, "--refine-poses", "--hold-out", "10"});
   EXPECT_LT(report["pose_refinement"]["motion_px"].get<double>(), 0.3);
   EXPECT_FALSE(report["held_out_refined_poses"].is_null());
+}
+
+/// The sample session with given poses, every one turned about the camera's axes by normal angles
+/// of 0.08 degrees, which is about a pixel.
+std::filesystem::path session_with_noisy_poses(const std::filesystem::path& folder) {
+  const auto session = folder / "noisy";
+  std::filesystem::create_directory(session);
+  for (const char* name : {"camera.yaml", "object.ply", "frames.avi"}) {
+    std::filesystem::copy(sample_session() / name, session / name);
+  }
+  auto json = nlohmann::json::parse(read_file(sample_session() / "session.json"));
+  json.erase("board");
+  json["poses"] = "poses.txt";
+  write_file(session / "session.json", json.dump());
+
+  std::mt19937 random(4);
+  std::normal_distribution<double> angle_rad(0, 0.08 * std::numbers::pi / 180);
+  std::ofstream poses(session / "poses.txt");
+  poses.precision(12);
+  const auto truth = capture::read_trajectory(sample_session() / "truth_poses.txt");
+  for (const auto& [stamp, board_from_camera] : truth.entries()) {
+    const Eigen::Vector3d turn(angle_rad(random), angle_rad(random), angle_rad(random));
+    const Eigen::Vector3d t = board_from_camera.translation();
+    const Eigen::Quaterniond q(board_from_camera.linear() *
+                               Eigen::AngleAxisd(turn.norm(), turn.normalized()));
+    poses << stamp << ' ' << t.transpose() << ' ' << q.coeffs().transpose() << '\n';
+  }
+  return session;
+}
+
+// Views at refined poses are nearer to the model than at the given ones: measured 31.5 against 29.4
+// dB.
+TEST(RefinePoses, BringsNoisyPosesNearer) {
+  const TemporaryFolder folder;
+  const auto report =
+      replay({session_with_noisy_poses(folder.path()), "-o", folder.path() / "model.glb",
+              "--refine-poses", "--pose-error", "1", "--hold-out", "10"});
+  EXPECT_GT(report["held_out_refined_poses"]["psnr"].get<double>(),
+            report["held_out"]["psnr"].get<double>() + 1.05);  // half of it
 }
 
 TEST(Exposure, IsFoundNearOneForASteadyCamera) {

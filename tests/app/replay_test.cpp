@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iostream>
 #include <map>
 #include <utility>
 
@@ -178,15 +177,16 @@ double missing_from(const Samples& b, const Samples& a) {
 
 // Where the z-buffer's word is in doubt it asks the rays, so that both say the same.
 TEST(Replay, ZBufferIsTheDefaultAndGivesTheSamplesOfRays) {
+  const auto z_buffer = [](const core::Mesh& mesh, int threads) {
+    return core::make_raster_visibility(mesh, threads);
+  };
   const Samples by_default = samples_with({});
-  EXPECT_TRUE(by_default == samples_with([](const core::Mesh& mesh, int threads) {
-                return core::make_raster_visibility(mesh, threads);
-              }));
+  EXPECT_TRUE(by_default == samples_with(z_buffer));
   EXPECT_TRUE(by_default == samples_with(core::make_ray_visibility));
 }
 
 // OpenGL's depths are those of pixel centres: next to silhouettes a vertex may fall to either side.
-// Against rays XX and YY of the samples were measured.
+// Measured: .015 % of the rays' samples are hidden, and .95 % of the z-buffer's are not the rays'.
 TEST(Replay, DepthsOfOpenGlGiveNearlyTheSamplesOfRays) {
   const auto gl = render::make_osmesa_context();
   const Samples depth = samples_with([&](const core::Mesh& mesh, int /*threads*/) {
@@ -195,9 +195,8 @@ TEST(Replay, DepthsOfOpenGlGiveNearlyTheSamplesOfRays) {
   const Samples rays = samples_with(core::make_ray_visibility);
   const double false_hidden = missing_from(depth, rays);
   const double false_visible = missing_from(rays, depth);
-  std::cout << "hidden " << false_hidden << " visible " << false_visible << "\n";
-  EXPECT_LT(false_hidden, 3 * 0.001);
-  EXPECT_LT(false_visible, 3 * 0.01);
+  EXPECT_LT(false_hidden, 3 * 0.00015);
+  EXPECT_LT(false_visible, 3 * 0.0095);
 }
 
 TEST(Replay, OptionsForVisibilityAreObeyed) {

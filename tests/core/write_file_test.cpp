@@ -18,7 +18,7 @@ using tests::read_file;
 std::optional<Error::Kind> fault_of_writing(const std::filesystem::path& path,
                                             const std::string& bytes) {
   try {
-    write_file(path, bytes);
+    core::write_file(path, bytes);
     return std::nullopt;
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find(path.filename().string()), std::string::npos)
@@ -31,7 +31,7 @@ TEST(WriteFile, ReplacesTheWholeFile) {
   const tests::TemporaryFolder folder;
   for (const std::string& bytes : {std::string("a long first one"), std::string("short"),
                                    std::string("\0\n\r\n\xff", 5), std::string()}) {
-    write_file(folder / "deep/er/file", bytes);
+    core::write_file(folder / "deep/er/file", bytes);
     EXPECT_EQ(read_file(folder / "deep/er/file"), bytes);
   }
 }

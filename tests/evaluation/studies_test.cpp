@@ -298,7 +298,7 @@ double cell(const Table& table, const std::vector<std::string>& row, const std::
 // All tables look at the same patches, so that the same fit gives the same figure wherever it
 // stands: the quadtree of 16 centres after all 64 views.
 TEST(Paper, TablesAgreeWithEachOther) {
-  const PaperTables tables = run_paper_experiments({.seeds = 1, .points_per_material = 1}, ignore);
+  const PaperTables tables = run_paper_experiments({.seeds = 1, .points_per_material = 4}, ignore);
   const std::string faithful = "quadtree 16x3 faithful";
   const std::string ridge = "quadtree 16x3 ridge";
   const double quadtree = cell(tables.layouts, {faithful, "uni", "grid"}, "mean");

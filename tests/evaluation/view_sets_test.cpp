@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <numbers>
 
 namespace sheen::evaluation {
@@ -100,7 +99,6 @@ TEST(HandheldPath, WalkIsSmooth) {
       fastest_deg = std::max(fastest_deg, std::asin(step) * 180.0 / std::numbers::pi);
     }
   }
-  std::cout << "fastest step " << fastest_deg << " degrees\n";
   EXPECT_LT(fastest_deg, 2.5);
   EXPECT_GT(fastest_deg, 1.0);
 }

@@ -38,7 +38,9 @@ namespace lens {
 using std::atan;
 using std::sqrt;
 
-#define LENS_FUNCTION template <typename Real, typename Coefficient> inline
+#define LENS_FUNCTION                            \
+  template <typename Real, typename Coefficient> \
+  inline
 #define LENS_ARRAY(name) const Coefficient* name
 #define LENS_OUT(name) Real& name
 #include "core/geometry/lens/fisheye.lens"
