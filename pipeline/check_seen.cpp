@@ -15,7 +15,7 @@ namespace sheen::pipeline {
 namespace {
 
 constexpr int kDiagnosedFrames = 8;
-constexpr int kReadFrames = 240;
+constexpr int kDiagnosedSpan = 240;
 
 std::string reasons_text(const FrameStatistics& frames) {
   std::string reasons;
@@ -55,8 +55,8 @@ capture::PoseRejection most_frequent(const FrameStatistics& frames) {
                                  const FrameStatistics& frames) {
   capture::BoardDiagnosis diagnosis(capture::read_board(*session.board), session.camera);
   const auto source = capture::open_frames(session, choice.start, choice.end);
-  const int stride = std::max(1, std::min(frames.frames_read, kReadFrames) / kDiagnosedFrames);
-  for (int i = 0; i < kReadFrames; ++i) {
+  const int stride = std::max(1, std::min(frames.frames_read, kDiagnosedSpan) / kDiagnosedFrames);
+  for (int i = 0; i < kDiagnosedSpan; ++i) {
     const auto frame = source->next();
     if (!frame) break;
     if (i % stride == 0) diagnosis.look_at(*frame);

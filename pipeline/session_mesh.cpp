@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kLargestObject_m = 20.0;
 constexpr double kSmallestObject_m = 0.001;
-constexpr int kProbedFrames = 120;        // at the start of a recording
+constexpr int kSideFrames = 120;          // at the start of a recording
 constexpr std::size_t kProbes = 12;       // poses that decide which side is outside
 constexpr std::size_t kEnoughViews = 30;  // to refuse before the recording is over
 constexpr double kDoubtfulBack = 0.25;    // of what cameras see
@@ -97,8 +97,8 @@ std::vector<Eigen::Isometry3d> probe_poses(const capture::Session& session,
   }
   const auto estimator = make_pose_estimator(session, choice.pose_source, choice.gate);
   const auto frames = capture::open_frames(session, choice.start, choice.end);
-  const int stride = kProbedFrames / static_cast<int>(kProbes);
-  for (int i = 0; i < kProbedFrames && poses.size() < kProbes; ++i) {
+  const int stride = kSideFrames / static_cast<int>(kProbes);
+  for (int i = 0; i < kSideFrames && poses.size() < kProbes; ++i) {
     const auto frame = frames->next();
     if (!frame) break;
     // Frames in between are passed over once one is posed; until then each is tried.

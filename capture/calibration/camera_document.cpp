@@ -16,18 +16,13 @@ namespace {
 
 constexpr std::size_t kMostWords = 64;  // of one key: a matrix of 3 x 4 and coefficients are fewer
 constexpr int kDeepest = 60;            // brackets; parsers recurse
-constexpr const char* kRemedy = "see docs/input.md for the camera files that are read";
-
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& fault,
-                       const std::string& remedy = kRemedy) {
-  throw core::bad_input(path, fault, remedy);
-}
 
 [[noreturn]] void fail_unknown(const std::filesystem::path& path) {
-  fail(path,
-       "is neither in OpenCV's FileStorage form nor a camera file of ROS, Kalibr, Agisoft, COLMAP "
-       "or "
-       "nerfstudio");
+  refuse_camera_file(
+      path,
+      "is neither in OpenCV's FileStorage form nor a camera file of ROS, Kalibr, Agisoft, COLMAP "
+      "or "
+      "nerfstudio");
 }
 
 /// Refuses text whose brackets are nested deeper than any camera file's, before a parser sees it.
@@ -36,7 +31,7 @@ void check_nesting(const std::string& text, const std::filesystem::path& path) {
   for (const char c : text) {
     if (c == '[' || c == '{') ++depth;
     if (c == ']' || c == '}') depth = std::max(0, depth - 1);
-    if (depth > kDeepest) fail(path, "is nested too deeply for a camera file");
+    if (depth > kDeepest) refuse_camera_file(path, "is nested too deeply for a camera file");
   }
 }
 
@@ -98,10 +93,10 @@ CameraKeys read_yaml(const std::string& text, const std::filesystem::path& path)
     }
   }
   if (cameras.size() > 1) {
-    fail(path,
-         "holds " + std::to_string(cameras.size()) + " cameras (" + cameras[0] + ", " + cameras[1] +
-             (cameras.size() > 2 ? ", ..." : "") + ")",
-         "keep the one that took the images");
+    refuse_camera_file(path,
+                       "holds " + std::to_string(cameras.size()) + " cameras (" + cameras[0] +
+                           ", " + cameras[1] + (cameras.size() > 2 ? ", ..." : "") + ")",
+                       "keep the one that took the images");
   }
   return yaml_keys(cameras.empty() ? root : root[cameras[0]]);
 }
@@ -158,11 +153,12 @@ pugi::xml_node project_calibration(const pugi::xml_document& document,
     found.push_back(node.node());
   }
   if (found.empty())
-    fail(path, "is an Agisoft project without an adjusted calibration",
-         "align the photos, or export the calibration of the camera");
+    refuse_camera_file(path, "is an Agisoft project without an adjusted calibration",
+                       "align the photos, or export the calibration of the camera");
   if (found.size() > 1) {
-    fail(path, "is an Agisoft project of " + std::to_string(found.size()) + " sensors",
-         "export the calibration of the camera that took the images");
+    refuse_camera_file(path,
+                       "is an Agisoft project of " + std::to_string(found.size()) + " sensors",
+                       "export the calibration of the camera that took the images");
   }
   return found.front();
 }
@@ -214,8 +210,9 @@ std::optional<LensRecord> colmap_camera(const std::vector<std::string>& words,
     k.resize(4, 0);
     record.distortion = k;
   } else {
-    fail(path, "is of the camera model " + core::quotable(model) + ", which is not read",
-         "use OPENCV or another of COLMAP's models with radial and tangential distortion");
+    refuse_camera_file(
+        path, "is of the camera model " + core::quotable(model) + ", which is not read",
+        "use OPENCV or another of COLMAP's models with radial and tangential distortion");
   }
   if (model == "OPENCV_FISHEYE") record.kind = core::LensKind::fisheye;
   return record;
@@ -235,8 +232,8 @@ std::optional<LensRecord> read_colmap(const std::string& text, const std::filesy
     ++cameras;
   }
   if (cameras > 1) {
-    fail(path, "holds " + std::to_string(cameras) + " cameras",
-         "keep the one that took the images");
+    refuse_camera_file(path, "holds " + std::to_string(cameras) + " cameras",
+                       "keep the one that took the images");
   }
   return found;
 }

@@ -21,17 +21,17 @@
 namespace sheen::capture {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{16} << 20;
+constexpr std::size_t kMostCameraBytes = std::size_t{16} << 20;
 constexpr double kInvisible_px = 0.05;  // terms that move nothing by more may be left out
-constexpr const char* kRemedy = "see docs/input.md for the camera files that are read";
 
 /// Keys of one file, with errors that name it.
 class KeyReader {
  public:
   KeyReader(const CameraKeys& keys, const std::filesystem::path& path) : keys_(keys), path_(path) {}
 
-  [[noreturn]] void fail(const std::string& fault, const std::string& remedy = kRemedy) const {
-    throw core::bad_input(path_, fault, remedy);
+  [[noreturn]] void fail(const std::string& fault) const { refuse_camera_file(path_, fault); }
+  [[noreturn]] void fail(const std::string& fault, const std::string& remedy) const {
+    refuse_camera_file(path_, fault, remedy);
   }
 
   /// The words under the first of these names that is there; null where none is.
@@ -245,8 +245,8 @@ LensRecord record_of(const CameraDocument& document, const std::filesystem::path
 }  // namespace
 
 core::CameraModel read_camera(const std::filesystem::path& path) {
-  return camera_of(record_of(parse_camera_document(read_text_file(path, kMaxBytes), path), path),
-                   path);
+  return camera_of(
+      record_of(parse_camera_document(read_text_file(path, kMostCameraBytes), path), path), path);
 }
 
 void write_camera(const std::filesystem::path& path, const core::CameraModel& camera) {

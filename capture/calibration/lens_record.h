@@ -24,6 +24,11 @@ struct LensRecord {
 /// The values of a camera file by the names of their keys, whatever its form: words as written.
 using CameraKeys = std::map<std::string, std::vector<std::string>>;
 
+/// Throws core::Error (bad_input).
+[[noreturn]] void refuse_camera_file(
+    const std::filesystem::path& path, const std::string& fault,
+    const std::string& remedy = "see docs/input.md for the camera files that are read");
+
 /// A camera from a record that is believable: image size, focal lengths, principal point,
 /// distortion that does not fold the image. The one place where a kind of lens becomes a camera.
 /// Throws core::Error (bad_input), `path` is for messages.

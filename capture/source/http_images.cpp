@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "capture/source/http_images.h"
 
+#include "capture/source/ffmpeg_owners.h"
 #include "capture/source/jpeg_decoder.h"
 #include "core/text/number.h"
 
 extern "C" {
-#include <libavformat/avformat.h>
 #include <libavutil/opt.h>
 }
 
@@ -16,16 +16,6 @@ namespace sheen::capture {
 namespace {
 
 constexpr const char* kCheckAddress = "check the address that the app or the camera shows";
-
-struct CloseInput {
-  void operator()(AVFormatContext* input) const { avformat_close_input(&input); }
-};
-struct CloseBytes {
-  void operator()(AVIOContext* bytes) const { avio_closep(&bytes); }
-};
-struct FreePacket {
-  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
-};
 
 int asks_to_give_up(void* gives_up) {
   return (*static_cast<const std::function<bool()>*>(gives_up))() ? 1 : 0;
@@ -82,9 +72,9 @@ std::string shown_address(const std::string& address) {
 
 struct HttpImages::Impl {
   std::function<bool()> gives_up;
-  std::unique_ptr<AVIOContext, CloseBytes> bytes;
-  std::unique_ptr<AVFormatContext, CloseInput> input;
-  std::unique_ptr<AVPacket, FreePacket> packet{av_packet_alloc()};
+  BytesPtr bytes;
+  InputPtr input;
+  PacketPtr packet{av_packet_alloc()};
 
   void connect(const std::string& address);
   void check_kind() const;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "capture/source/video_decoder.h"
 
+#include "capture/source/ffmpeg_owners.h"
 #include "core/diagnostics/error.h"
 
 extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
 #include <libavutil/display.h>
 }
 
@@ -18,33 +17,16 @@ extern "C" {
 namespace sheen::capture {
 namespace {
 
-constexpr double kMostFrames = 1e8;
+constexpr double kMostStatedFrames = 1e8;
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
 constexpr std::size_t kMostPending = 256;  // packets whose picture is not out yet
 constexpr int kMostFaults = 1000;  // in a row, without a packet: the decoder has lost itself
-
-struct CloseInput {
-  void operator()(AVFormatContext* input) const { avformat_close_input(&input); }
-};
-struct FreeContext {
-  void operator()(AVCodecContext* context) const { avcodec_free_context(&context); }
-};
-struct FreeFrame {
-  void operator()(AVFrame* frame) const { av_frame_free(&frame); }
-};
-struct FreePacket {
-  void operator()(AVPacket* packet) const { av_packet_free(&packet); }
-};
-using Input = std::unique_ptr<AVFormatContext, CloseInput>;
-using Context = std::unique_ptr<AVCodecContext, FreeContext>;
-using FramePtr = std::unique_ptr<AVFrame, FreeFrame>;
-using Packet = std::unique_ptr<AVPacket, FreePacket>;
 
 core::Error undecodable(const std::filesystem::path& path) {
   return core::bad_input(path, "cannot be decoded as a video", "check that it is complete");
 }
 
-Input open_input(const std::filesystem::path& path) {
+InputPtr open_input(const std::filesystem::path& path) {
   // Faults of files are told by us, in one line.
   av_log_set_level(AV_LOG_QUIET);
   AVDictionary* options = nullptr;
@@ -55,7 +37,7 @@ Input open_input(const std::filesystem::path& path) {
       avformat_open_input(&context, ("file:" + path.string()).c_str(), nullptr, &options);
   av_dict_free(&options);
   if (status < 0) throw undecodable(path);
-  Input input(context);
+  InputPtr input(context);
   if (avformat_find_stream_info(context, nullptr) < 0) throw undecodable(path);
   return input;
 }
@@ -114,7 +96,8 @@ std::optional<int> shown_pictures(const AVFormatContext& input, AVStream& stream
                                : 0;
     count = std::floor(seconds * *fps + 0.5);
   }
-  return count >= 1 && count < kMostFrames ? std::optional(static_cast<int>(count)) : std::nullopt;
+  return count >= 1 && count < kMostStatedFrames ? std::optional(static_cast<int>(count))
+                                                 : std::nullopt;
 }
 
 }  // namespace
@@ -130,10 +113,10 @@ struct VideoDecoder::Impl {
   void fill_in_colours();
 
   std::filesystem::path path;
-  Input input;
+  InputPtr input;
   int stream_index = -1;
-  Context codec;
-  Packet packet{av_packet_alloc()};
+  CodecPtr codec;
+  PacketPtr packet{av_packet_alloc()};
   FramePtr frame{av_frame_alloc()};
   VideoFacts facts;
   bool has_packet = false;  ///< `packet` is read, but not with the decoder yet

@@ -237,6 +237,46 @@ TEST_F(CameraForms, WrongUnitsAndCountsAreNamed) {
   refuse("ost.yaml", ros("plumb_bob", "[\"-0,25\", 0.08, 0.001, -0.002, 0.01]", false), "comma");
 }
 
+/// Reads the text whatever it says; anything but a camera or a refusal fails the test.
+void expect_read_or_refused(const tests::TemporaryFolder& folder, const std::string& name,
+                            const std::string& text) {
+  const auto path = folder.write(name, text);
+  try {
+    EXPECT_GT(read_camera(path).width_px(), 0);
+  } catch (const core::Error& error) {
+    EXPECT_EQ(error.kind(), core::Error::Kind::bad_input);
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(CameraForms, WhatIsCutOrAlteredIsReadOrRefused) {
+  const std::vector<std::string> texts = {
+      ros("plumb_bob", "[-0.25, 0.08, 0.001, -0.002, 0.01]", false),
+      "%YAML:1.0\n---\nimage_width: 1280\nimage_height: 720\ncamera_matrix: !!opencv-matrix\n"
+      "   rows: 3\n   cols: 3\n   dt: d\n   data: [ 900., 0., 640., 0., 900., 360., 0., 0., 1. ]\n"
+      "distortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: 4\n   dt: d\n"
+      "   data: [ 0.1, 0., 0., 0. ]\n",
+      "cam0:\n  camera_model: pinhole\n  distortion_coeffs: [0, 0, 0, 0]\n  distortion_model: "
+      "radtan\n  intrinsics: [900.5, 902.25, 641.5, 357.75]\n  resolution: [1280, 720]\n",
+      "<?xml version=\"1.0\"?>\n<calibration><projection>frame</projection><width>1280</width>"
+      "<height>720</height><f>900</f><cx>0</cx><cy>0</cy><k1>0.1</k1></calibration>\n",
+      R"({"w": 1280, "h": 720, "fl_x": 900, "fl_y": 900, "cx": 640, "cy": 360, "frames": []})",
+      "1 OPENCV 1280 720 900 900 640 360 0 0 0 0\n"};
+  std::mt19937 random(9);
+  for (const std::string& text : texts) {
+    for (std::size_t size = 0; size < text.size(); ++size) {
+      expect_read_or_refused(folder_, "cut.yaml", text.substr(0, size));
+    }
+    for (int run = 0; run < 300; ++run) {
+      std::string altered = text;
+      for (int i = 0; i < 3; ++i) {
+        altered[random() % altered.size()] = static_cast<char>(random() % 256);
+      }
+      expect_read_or_refused(folder_, "altered.yaml", altered);
+    }
+  }
+}
+
 TEST_F(CameraForms, MarksAndLineEndsOfOtherSystemsAreRead) {
   std::string text = "\xef\xbb\xbf" + ros("plumb_bob", "[-0.25, 0.08, 0.001, -0.002, 0.01]", false);
   for (std::size_t i = text.find('\n'); i != std::string::npos; i = text.find('\n', i + 2)) {

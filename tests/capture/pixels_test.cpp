@@ -13,6 +13,7 @@
 #include <zlib.h>
 
 #include <cmath>
+#include <random>
 
 namespace sheen::capture::test {
 namespace {
@@ -20,11 +21,11 @@ namespace {
 using tests::read_file;
 using tests::TemporaryFolder;
 
-constexpr ImageSize kSize{48, 32};
+constexpr ImageSize kStillSize{48, 32};
 
 /// Differs in all four corners, so that every turn and mirror shows.
 cv::Mat corner_image() {
-  cv::Mat image(kSize.height_px, kSize.width_px, CV_8UC3, cv::Scalar(60, 60, 60));
+  cv::Mat image(kStillSize.height_px, kStillSize.width_px, CV_8UC3, cv::Scalar(60, 60, 60));
   image(cv::Rect(0, 0, 24, 16)) = cv::Scalar(40, 60, 200);
   image(cv::Rect(24, 0, 24, 16)) = cv::Scalar(60, 200, 40);
   image(cv::Rect(0, 16, 24, 16)) = cv::Scalar(200, 60, 60);
@@ -97,12 +98,13 @@ TEST(StillReader, TakesThePixelsThatAreStoredWhateverExifSays) {
   const TemporaryFolder folder;
   const std::string jpeg = encoded(corner_image(), ".jpg");
   StillReader plain;
-  const cv::Mat stored = plain.read(folder.write("plain.jpg", jpeg), kSize);
+  const cv::Mat stored = plain.read(folder.write("plain.jpg", jpeg), kStillSize);
   for (int orientation = 1; orientation <= 8; ++orientation) {
     for (const bool is_big_endian : {false, true}) {
       StillReader reader;
       const cv::Mat image = reader.read(
-          folder.write("turned.jpg", with_orientation(jpeg, orientation, is_big_endian)), kSize);
+          folder.write("turned.jpg", with_orientation(jpeg, orientation, is_big_endian)),
+          kStillSize);
       EXPECT_EQ(cv::norm(image, stored, cv::NORM_INF), 0) << orientation;
       EXPECT_EQ(reader.notes().size(), orientation == 1 ? 0u : 1u) << orientation;
     }
@@ -112,7 +114,7 @@ TEST(StillReader, TakesThePixelsThatAreStoredWhateverExifSays) {
 TEST(StillReader, TurnsWhereTheCameraIsForTheTurnedImages) {
   const TemporaryFolder folder;
   const std::string jpeg = encoded(corner_image(), ".jpg");
-  const ImageSize upright{kSize.height_px, kSize.width_px};
+  const ImageSize upright{kStillSize.height_px, kStillSize.width_px};
   for (const int orientation : {5, 6, 7, 8}) {  // those that exchange width and height
     const auto path = folder.write("turned.jpg", with_orientation(jpeg, orientation, false));
     StillReader reader;
@@ -154,11 +156,11 @@ TEST(StillReader, ConvertsColoursFromTheProfile) {
   const std::array<cv::Vec3b, 4> colours{cv::Vec3b(90, 120, 180), cv::Vec3b(80, 170, 100),
                                          cv::Vec3b(190, 120, 110), cv::Vec3b(128, 128, 128)};
   for (const cv::Vec3b& bgr : colours) {
-    const cv::Mat image(kSize.height_px, kSize.width_px, CV_8UC3, cv::Scalar(bgr));
+    const cv::Mat image(kStillSize.height_px, kStillSize.width_px, CV_8UC3, cv::Scalar(bgr));
     StillReader reader;
     const cv::Mat read = reader.read(
         folder.write("p3.png", with_profile(encoded(image, ".png"), icc_profile(kP3Primaries))),
-        kSize);
+        kStillSize);
     Eigen::Vector3d rgb;
     for (int i = 0; i < 3; ++i) rgb[i] = light(bgr[2 - i] / 255.0);
     rgb = srgb_from_p3 * rgb;
@@ -177,12 +179,13 @@ TEST(StillReader, LeavesSrgbAlone) {
   StillReader reader;
   const cv::Mat read = reader.read(
       folder.write("srgb.png", with_profile(encoded(image, ".png"), icc_profile(kSrgbPrimaries))),
-      kSize);
+      kStillSize);
   EXPECT_EQ(cv::norm(read, image, cv::NORM_INF), 0);
   EXPECT_TRUE(reader.notes().empty());
   // A profile that nobody can read is said, and changes nothing.
   const cv::Mat other = reader.read(
-      folder.write("bad.png", with_profile(encoded(image, ".png"), std::string(200, 'x'))), kSize);
+      folder.write("bad.png", with_profile(encoded(image, ".png"), std::string(200, 'x'))),
+      kStillSize);
   EXPECT_EQ(cv::norm(other, image, cv::NORM_INF), 0);
   EXPECT_EQ(reader.notes().size(), 1u);
 }
@@ -194,7 +197,30 @@ TEST(StillReader, RefusesPicturesCutShort) {
     for (const std::size_t size : {std::size_t{0}, std::size_t{1}, whole.size() / 2}) {
       const auto path = folder.write("cut" + std::string(ending), whole.substr(0, size));
       StillReader reader;
-      expect_bad_input([&] { static_cast<void>(reader.read(path, kSize)); }, "cut");
+      expect_bad_input([&] { static_cast<void>(reader.read(path, kStillSize)); }, "cut");
+    }
+  }
+}
+
+TEST(StillReader, ReadsOrRefusesWhateverHeadersSay) {
+  const TemporaryFolder folder;
+  const std::string jpeg = with_orientation(encoded(corner_image(), ".jpg"), 6, true);
+  const std::string png = with_profile(encoded(corner_image(), ".png"), icc_profile(kP3Primaries));
+  std::mt19937 random(11);
+  for (const std::string& whole : {jpeg, png}) {
+    for (int run = 0; run < 600; ++run) {
+      std::string altered = whole;
+      // Where headers, EXIF and the profile lie.
+      const std::size_t part = std::min<std::size_t>(altered.size(), 500);
+      for (int i = 0; i < 2; ++i) altered[random() % part] = static_cast<char>(random() % 256);
+      const auto path = folder.write("altered", altered);
+      StillReader reader;
+      try {
+        const cv::Mat image = reader.read(path, kStillSize);
+        EXPECT_EQ(image.size(), cv::Size(kStillSize.width_px, kStillSize.height_px));
+      } catch (const core::Error& error) {
+        EXPECT_EQ(error.kind(), core::Error::Kind::bad_input);
+      }
     }
   }
 }
@@ -205,7 +231,7 @@ TEST(StillReader, NamesKindsThatAreNotReadByTheirBytes) {
     bytes.append(64, '\0');
     const auto path = folder.write("IMG_0001.jpg", bytes);  // whatever the name says
     StillReader reader;
-    expect_bad_input([&] { static_cast<void>(reader.read(path, kSize)); }, word, "convert");
+    expect_bad_input([&] { static_cast<void>(reader.read(path, kStillSize)); }, word, "convert");
   };
   const auto box = [](const std::string& brand) {
     std::string bytes("\0\0\0\x18", 4);
@@ -245,16 +271,17 @@ TEST(ImageFolder, ReadsNamesWithColonsAndPerCents) {
   folder.write("take 10:30/a:b_000.png", png);
   folder.write("take 10:30/a:b_001.png", png);
   const auto frames =
-      open_image_folder(folder.path(), "take 10:30/a:b_%03d.png", kSize, {}, std::nullopt);
+      open_image_folder(folder.path(), "take 10:30/a:b_%03d.png", kStillSize, {}, std::nullopt);
   EXPECT_EQ(frames->frame_count(), 2);
   int count = 0;
   while (frames->next()) ++count;
   EXPECT_EQ(count, 2);
   // Hidden twins of Macs do not count.
   folder.write("take 10:30/._a:b_000.png", "x");
-  EXPECT_EQ(open_image_folder(folder.path(), "take 10:30/a:b_%03d.png", kSize, {}, std::nullopt)
-                ->frame_count(),
-            2);
+  EXPECT_EQ(
+      open_image_folder(folder.path(), "take 10:30/a:b_%03d.png", kStillSize, {}, std::nullopt)
+          ->frame_count(),
+      2);
 }
 
 /// 8-bit sRGB of one grey value of 16 bits.

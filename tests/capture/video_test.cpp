@@ -14,7 +14,7 @@ namespace {
 
 using tests::TemporaryFolder;
 
-constexpr ImageSize kSize{64, 48};
+constexpr ImageSize kVideoSize{64, 48};
 
 /// Frames told apart by their brightness, in steps that lossy compression keeps.
 Eigen::Vector3d grey_by_number(int frame, bool /*is_right*/) {
@@ -80,7 +80,7 @@ TEST(VideoColours, AreReadByTheMatrixAndRangeThatTheFileStates) {
           return kColours[static_cast<std::size_t>(frame)][is_right ? 1 : 0];
         };
         write_video(folder / "colours.mkv", spec);
-        const auto source = open_video(folder / "colours.mkv", kSize, {}, std::nullopt);
+        const auto source = open_video(folder / "colours.mkv", kVideoSize, {}, std::nullopt);
         const auto frames = all_frames(*source);
         ASSERT_EQ(frames.size(), 3u);
         // 8 bits: luma is off by half a step of 255/219, colour differences by half a step of
@@ -107,7 +107,7 @@ TEST(VideoColours, HighDynamicRangeIsConvertedAndSaid) {
       return Eigen::Vector3d::Constant(is_right ? 0.38 : white).eval();
     };
     write_video(folder / "hdr.mkv", spec);
-    const auto source = open_video(folder / "hdr.mkv", kSize, {}, std::nullopt);
+    const auto source = open_video(folder / "hdr.mkv", kVideoSize, {}, std::nullopt);
     const auto frames = all_frames(*source);
     ASSERT_EQ(frames.size(), 2u);
     // The standard's percentages are rounded (pixels_test has the sums): 4 steps.
@@ -137,7 +137,7 @@ TEST(VideoTimes, AreTheFramesOwnWhateverTheRate) {
   VideoSpec spec = numbered(0);
   for (const std::int64_t ms : {0, 40, 80, 120, 700, 800, 900, 1000}) spec.stamps_ms.push_back(ms);
   write_video(folder / "vfr.mkv", spec);
-  const auto source = open_video(folder / "vfr.mkv", kSize, {}, std::nullopt);
+  const auto source = open_video(folder / "vfr.mkv", kVideoSize, {}, std::nullopt);
   const auto frames = all_frames(*source);
   ASSERT_EQ(frames.size(), spec.stamps_ms.size());
   for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -149,7 +149,7 @@ TEST(VideoTimes, AreTheFramesOwnWhateverTheRate) {
   EXPECT_TRUE(source->report().notes.empty());
 
   // A stated rate wins, and the two disagree by 1 - 7/25 = 0.72 s at the end.
-  const auto stated = open_video(folder / "vfr.mkv", kSize, {}, 25);
+  const auto stated = open_video(folder / "vfr.mkv", kVideoSize, {}, 25);
   const auto even = all_frames(*stated);
   ASSERT_EQ(even.size(), frames.size());
   EXPECT_NEAR(even[7].time_s, 7 / 25.0, 1e-9);
@@ -165,7 +165,7 @@ TEST(VideoTimes, WhatAnEditListHidesIsNotThere) {
   spec.states_colours = false;
   spec.matrix = AVCOL_SPC_SMPTE170M;
   write_video(folder / "trimmed.mp4", spec);
-  const auto source = open_video(folder / "trimmed.mp4", kSize, {}, std::nullopt);
+  const auto source = open_video(folder / "trimmed.mp4", kVideoSize, {}, std::nullopt);
   EXPECT_EQ(source->frame_count(), 12);
   const auto frames = all_frames(*source);
   ASSERT_EQ(frames.size(), 12u);
@@ -191,7 +191,7 @@ TEST(VideoTurns, StoredPixelsAreTakenUnlessTheCameraIsForTurnedOnes) {
       return Eigen::Vector3d::Constant(is_right ? 0.8 : 0.2).eval();
     };
     write_video(folder / "turned.mp4", spec);
-    const auto stored = open_video(folder / "turned.mp4", kSize, {}, std::nullopt);
+    const auto stored = open_video(folder / "turned.mp4", kVideoSize, {}, std::nullopt);
     const cv::Mat image = stored->next()->image;
     EXPECT_LT(image.at<cv::Vec3b>(24, 16)[0], 100);
     EXPECT_GT(image.at<cv::Vec3b>(24, 48)[0], 150);
@@ -215,7 +215,7 @@ TEST(VideoFiles, DamagedFramesAreLeftOutAndCounted) {
   spec.format = AV_PIX_FMT_RGB24;
   spec.damaged = {3, 4, 11};
   write_video(folder / "damaged.mkv", spec);
-  const auto source = open_video(folder / "damaged.mkv", kSize, {}, std::nullopt);
+  const auto source = open_video(folder / "damaged.mkv", kVideoSize, {}, std::nullopt);
   const auto frames = all_frames(*source);
   std::vector<int> indices;
   for (const Frame& frame : frames) indices.push_back(frame.index);
@@ -236,7 +236,7 @@ TEST(VideoFiles, NamesWithColonsAndPerCentsAreNames) {
   const TemporaryFolder folder;
   const std::string name = "http:100%d 10:30.mkv";
   write_video(folder / name, numbered(3));
-  EXPECT_EQ(all_frames(*open_video(folder / name, kSize, {}, std::nullopt)).size(), 3u);
+  EXPECT_EQ(all_frames(*open_video(folder / name, kVideoSize, {}, std::nullopt)).size(), 3u);
 }
 
 TEST(VideoFiles, EveryFileCutShortIsReadOrRefused) {
@@ -246,7 +246,7 @@ TEST(VideoFiles, EveryFileCutShortIsReadOrRefused) {
   for (std::size_t size = 0; size < whole.size(); size += 97) {
     const auto path = folder.write("cut.mkv", whole.substr(0, size));
     try {
-      EXPECT_LE(all_frames(*open_video(path, kSize, {}, std::nullopt)).size(), 4u);
+      EXPECT_LE(all_frames(*open_video(path, kVideoSize, {}, std::nullopt)).size(), 4u);
     } catch (const core::Error& error) {
       EXPECT_EQ(error.kind(), core::Error::Kind::bad_input);
     }

@@ -65,7 +65,7 @@ GlbBuilder plain(const Mesh& mesh) {
   return glb;
 }
 
-std::string refusal(const std::filesystem::path& path) {
+std::string fault_of_glb(const std::filesystem::path& path) {
   try {
     read_mesh(path);
   } catch (const Error& error) {
@@ -194,7 +194,8 @@ TEST_F(GltfTest, MeshoptDataCutShortIsRefused) {
   for (const std::size_t size : {0U, 1U, 7U, 40U}) {
     std::string damaged(size, '\xa0');
     EXPECT_NE(
-        refusal(write_file(folder_ / "cut.glb", packed_by_meshopt(sphere_, &damaged).bytes())), "");
+        fault_of_glb(write_file(folder_ / "cut.glb", packed_by_meshopt(sphere_, &damaged).bytes())),
+        "");
   }
 }
 
@@ -260,14 +261,15 @@ TEST_F(GltfTest, AlteredDracoDataIsRefusedOrReadNeverMore) {
     }
   }
   for (std::size_t size = 0; size < packed.size(); size += 11) {
-    refusal(write_file(folder_ / "cut.glb", with_draco(sphere_, packed.substr(0, size)).bytes()));
+    fault_of_glb(
+        write_file(folder_ / "cut.glb", with_draco(sphere_, packed.substr(0, size)).bytes()));
   }
 }
 
 TEST_F(GltfTest, RequiredExtensionsThatAreNotReadAreNamed) {
   GlbBuilder glb = plain(sphere_);
   glb.require("EXT_another_geometry");
-  const std::string what = refusal(write_file(folder_ / "other.glb", glb.bytes()));
+  const std::string what = fault_of_glb(write_file(folder_ / "other.glb", glb.bytes()));
   EXPECT_NE(what.find("EXT_another_geometry"), std::string::npos) << what;
   // About colours only: passed over.
   GlbBuilder shiny = plain(sphere_);

@@ -49,7 +49,7 @@ std::vector<MeshView> ring_of_cameras(const CameraModel& camera, double height) 
   return views;
 }
 
-const CameraModel kCamera(
+const CameraModel kWitness(
     {.width_px = 320, .height_px = 240, .focal_px = {300, 300}, .principal_px = {159.5, 119.5}});
 
 /// Triangles up to the corner they begin with.
@@ -75,7 +75,7 @@ std::vector<Eigen::Vector3f> used_normals(const Mesh& mesh) {
 
 TEST(FaceCameras, OpenSurfacesTurnTheSideOutThatCamerasSee) {
   const Mesh right = bowl();
-  const auto views = ring_of_cameras(kCamera, 3);
+  const auto views = ring_of_cameras(kWitness, 3);
   for (const bool winding : {false, true}) {
     for (const bool normals : {false, true}) {
       SCOPED_TRACE((winding ? "winding " : "") + std::string(normals ? "normals" : ""));
@@ -98,7 +98,7 @@ TEST(FaceCameras, ABowlSeenFromAboveIsSeenFromInside) {
   mesh.normals.clear();
   complete_normals(mesh);
   const Mesh before = mesh;
-  const auto views = ring_of_cameras(kCamera, 20);
+  const auto views = ring_of_cameras(kWitness, 20);
   const SeenSides seen = face_cameras(mesh, views);
   // Mirrored triangles already run the way that shows them from inside.
   EXPECT_LT(seen.back_share, 0.1);
@@ -115,7 +115,7 @@ TEST(FaceCameras, PartsAreJudgedOneByOne) {
   turn_winding(right);
   turn_normals(right);
   Mesh mesh = testing::together(left, right);
-  const SeenSides seen = face_cameras(mesh, ring_of_cameras(kCamera, 3));
+  const SeenSides seen = face_cameras(mesh, ring_of_cameras(kWitness, 3));
   EXPECT_EQ(seen.turned_parts, 1u);
   EXPECT_EQ(turned_free(mesh), turned_free(good));
   EXPECT_EQ(used_normals(mesh), used_normals(good));
