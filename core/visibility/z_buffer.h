@@ -31,6 +31,13 @@ class ZBuffer {
   /// Drawn triangles wider or higher than kLarge_px, and all with a corner that has no pixel.
   [[nodiscard]] const std::vector<LargeTriangle>& large_triangles() const { return large_; }
 
+  /// Inverse depth at a pixel of the image within the box, 1/m; 0 where nothing is.
+  [[nodiscard]] float at(int x_px, int y_px) const {
+    const auto x = static_cast<std::size_t>(x_px - static_cast<int>(left_px_));
+    const auto y = static_cast<std::size_t>(y_px - static_cast<int>(top_px_));
+    return maps_.front().data()->inverse_depth[y * row() + x];
+  }
+
   /// Least and greatest inverse depth of the four pixels around a position within the box.
   struct Range {
     float least, greatest;

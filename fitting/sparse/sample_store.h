@@ -15,7 +15,7 @@
 namespace sheen::fitting::sparse {
 
 /// Most samples a patch may keep.
-inline constexpr std::size_t kMaxStoredSamples = kColumnRows;
+inline constexpr std::size_t kMaxStoredSamples = 128;
 
 /// A direction and the colour seen from it, in single precision.
 struct DirectedColour {
@@ -49,6 +49,8 @@ class SampleStore {
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] DirectedColour at(std::size_t idx, const SamplePool& pool) const;
+  /// Samples that were averaged into this one, 1 to 255.
+  [[nodiscard]] float count(std::size_t idx, const SamplePool& pool) const;
   /// Reads all of them; `samples` has room for kMaxStoredSamples.
   std::span<const DirectedColour> read(const SamplePool& pool,
                                        std::span<DirectedColour> samples) const;

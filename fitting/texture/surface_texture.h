@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "core/atlas/atlas.h"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace sheen::fitting {
+
+/// A texel as it is stored: display-referred sRGB, 8 bits a channel, R, G, B.
+using Texel = std::array<std::uint8_t, 3>;
+
+/// Colours over a surface, finer than its vertices.
+class SurfaceTexture {
+ public:
+  /// Mid grey everywhere.
+  explicit SurfaceTexture(core::Atlas atlas);
+
+  [[nodiscard]] const core::Atlas& atlas() const { return atlas_; }
+  /// Row by row, atlas().width texels each.
+  [[nodiscard]] const std::vector<Texel>& texels() const { return texels_; }
+  [[nodiscard]] std::vector<Texel>& texels() { return texels_; }
+
+  /// Bilinear, sRGB in [0, 1]; `place` on the atlas, texels. Beyond the outermost centres the
+  /// texture goes on as it ends.
+  [[nodiscard]] Eigen::Vector3f read(const Eigen::Vector2f& place) const;
+
+  /// The same at a place on a triangle of the mesh.
+  [[nodiscard]] Eigen::Vector3f at(std::size_t triangle_idx,
+                                   const Eigen::Vector3f& barycentric) const {
+    const Eigen::Vector2f place = barycentric[0] * atlas_.place(triangle_idx, 0) +
+                                  barycentric[1] * atlas_.place(triangle_idx, 1) +
+                                  barycentric[2] * atlas_.place(triangle_idx, 2);
+    return read(place);
+  }
+
+ private:
+  core::Atlas atlas_;
+  std::vector<Texel> texels_;
+};
+
+}  // namespace sheen::fitting
