@@ -8,8 +8,16 @@ set(SHEEN_COMMON_HEADERS
 function(sheen_module name)
   cmake_parse_arguments(MODULE "" "" "SOURCES;LINK;PRIVATE_LINK;PRECOMPILE" ${ARGN})
   add_library(sheen_${name} STATIC ${MODULE_SOURCES})
-  target_include_directories(sheen_${name} PUBLIC ${PROJECT_SOURCE_DIR})
-  target_link_libraries(sheen_${name} PUBLIC ${MODULE_LINK} PRIVATE ${MODULE_PRIVATE_LINK} sheen_warnings)
+  add_library(sheen::${name} ALIAS sheen_${name})
+  # Installed headers are named <sheen/core/...> outside and include each other as inside.
+  target_include_directories(sheen_${name} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/sheen>)
+  target_compile_features(sheen_${name} PUBLIC cxx_std_20)
+  target_link_libraries(sheen_${name}
+    PUBLIC ${MODULE_LINK}
+    PRIVATE ${MODULE_PRIVATE_LINK} $<BUILD_INTERFACE:sheen_warnings>)
   target_precompile_headers(sheen_${name} PRIVATE ${SHEEN_COMMON_HEADERS} ${MODULE_PRECOMPILE})
 endfunction()
 
@@ -20,17 +28,20 @@ function(sheen_kernels options)
     COMPILE_OPTIONS "${options}" SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
-# sheen_embed(OUTPUT FUNCTION f NAMESPACE n HEADER h FILES ...): makes the C++ file OUTPUT, in which
-# the function returns the text of a file by its name, so that the program needs no files at run time.
+# sheen_embed(OUTPUT [ROOT folder] FUNCTION f NAMESPACE n HEADER h FILES ...): makes the C++ file
+# OUTPUT, in which the function returns the text of a file by its name below ROOT, so that the program
+# needs no files at run time.
 function(sheen_embed output)
-  cmake_parse_arguments(EMBED "" "FUNCTION;NAMESPACE;HEADER" "FILES" ${ARGN})
+  cmake_parse_arguments(EMBED "" "ROOT;FUNCTION;NAMESPACE;HEADER" "FILES" ${ARGN})
+  cmake_path(ABSOLUTE_PATH EMBED_ROOT)
+  list(TRANSFORM EMBED_FILES PREPEND ${EMBED_ROOT}/ OUTPUT_VARIABLE sources)
   set(script ${PROJECT_SOURCE_DIR}/cmake/embed_script.cmake)
   add_custom_command(
     OUTPUT ${output}
-    COMMAND ${CMAKE_COMMAND} "-DFILES=${EMBED_FILES}" -DROOT=${CMAKE_CURRENT_SOURCE_DIR}
+    COMMAND ${CMAKE_COMMAND} "-DFILES=${EMBED_FILES}" -DROOT=${EMBED_ROOT}
       -DOUTPUT=${output} -DFUNCTION=${EMBED_FUNCTION} -DNAMESPACE=${EMBED_NAMESPACE}
       -DHEADER=${EMBED_HEADER} -P ${script}
-    DEPENDS ${EMBED_FILES} ${script}
+    DEPENDS ${sources} ${script}
     COMMENT "Embedding ${EMBED_FUNCTION}"
     VERBATIM)
 endfunction()

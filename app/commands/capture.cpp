@@ -4,7 +4,7 @@
 #include "app/commands/camera_list.h"
 #include "app/commands/replay.h"
 #include "app/interrupt.h"
-#include "app/preview/window.h"
+#include "app/preview/run_preview.h"
 #include "capture/pose/board.h"
 #include "capture/session/camera_recording.h"
 #include "capture/session/session.h"
@@ -58,7 +58,7 @@ void check_before_recording(const CaptureOptions& options, const capture::Sessio
   static_cast<void>(capture::read_board(setup.board));
   static_cast<void>(pipeline::read_object_mesh(setup.mesh));
   context.check_outputs({options.fit.output});
-  if (options.fit.preview) Window::check_display();
+  if (options.fit.preview) check_display();
 }
 
 capture::RecordingTerms terms_of(const CaptureOptions& options, const CommandContext& context,

@@ -2,6 +2,7 @@
 #include "app/commands/replay.h"
 
 #include "app/interrupt.h"
+#include "app/preview/live_session.h"
 #include "app/preview/run_preview.h"
 #include "app/replay_report.h"
 #include "app/terminal_sink.h"
@@ -176,6 +177,7 @@ pipeline::ReconstructionOptions completed(const ReplayOptions& options,
 void run_replay(const ReplayOptions& options, const CommandContext& context) {
   // Open everything that may be wrong before the long work.
   context.check_outputs({options.output, options.mean_output, options.poses_output});
+  if (options.preview) check_display();
   const capture::Session session = capture::open_session(options.session);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
   auto frames = capture::open_frames(session, options.reconstruction.frames.start,

@@ -109,17 +109,25 @@ void LiveSession::obey() {
     if (const double seconds = std::exchange(requests_.undo_s, 0); seconds > 0) {
       lock.unlock();
       undo(seconds);
+      wake();
       lock.lock();
       continue;
     }
     if (std::exchange(requests_.save, false)) {
       lock.unlock();
       save();
+      wake();
       lock.lock();
       continue;
     }
     const bool paused = requests_.paused && !requests_.closed;
-    status_.phase = paused ? LiveStatus::Phase::paused : LiveStatus::Phase::running;
+    const auto phase = paused ? LiveStatus::Phase::paused : LiveStatus::Phase::running;
+    if (std::exchange(status_.phase, phase) != phase) {
+      lock.unlock();
+      wake();
+      lock.lock();
+      continue;  // something may have been asked for meanwhile
+    }
     if (!paused || parts_.is_camera) return;
     asked_.wait(lock);
   }

@@ -5,6 +5,7 @@
 #include "app/preview/live_session.h"
 #include "app/preview/model_view.h"
 #include "app/preview/object_painter.h"
+#include "app/preview/preview_subject.h"
 #include "app/preview/redraw_pace.h"
 #include "app/preview/side_panel.h"
 #include "app/preview/window.h"
@@ -16,18 +17,6 @@
 #include <string>
 
 namespace sheen::app {
-
-/// What a window is opened for: a finished light field, or a session that is building one. Exactly
-/// one of `light_field` and `live` is set; what is pointed to outlives the window.
-struct PreviewSubject {
-  std::string title;
-  const core::Mesh& mesh;
-  Eigen::Vector3d up;  ///< upright axis in the object frame
-  const fitting::LightField* light_field = nullptr;
-  ModelFacts facts = {};  ///< of a finished light field
-  LiveSession* live = nullptr;
-  std::filesystem::path snapshot_folder = {};
-};
 
 /// The window over a subject. Lives on the main thread.
 class PreviewWindow {

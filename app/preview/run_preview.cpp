@@ -2,6 +2,8 @@
 #include "app/preview/run_preview.h"
 
 #include "app/interrupt.h"
+#include "app/preview/live_session.h"
+#include "app/preview/preview_window.h"
 
 #include <atomic>
 #include <exception>
@@ -27,6 +29,10 @@ class Watch {
 };
 
 }  // namespace
+
+void check_display() {
+  Window::check_display();
+}
 
 void run_viewer(const PreviewSubject& subject) {
   PreviewWindow window(subject);

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "app/preview/preview_window.h"
+#include "app/preview/preview_subject.h"
 
 #include <functional>
 
 namespace sheen::app {
+
+/// Throws core::Error (run_failed) where there is no display, or this build has no windows.
+void check_display();
 
 /// Shows a finished light field until the window is closed.
 void run_viewer(const PreviewSubject& subject);

@@ -3,6 +3,7 @@
 
 #include "app/preview/commands.h"
 #include "app/preview/live_status.h"
+#include "app/preview/preview_subject.h"
 #include "app/preview/theme.h"
 #include "app/preview/view_state.h"
 #include "fitting/guidance/direction_cells.h"
@@ -25,9 +26,6 @@ struct PatchNews {
   fitting::guidance::DirectionCells seen = 0;
   fitting::guidance::DirectionCells reachable = 0;
 };
-
-/// Facts about a finished model, name and value.
-using ModelFacts = std::vector<std::pair<std::string, std::string>>;
 
 /// What the panel at the side shows.
 struct PanelContents {

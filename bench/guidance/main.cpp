@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "bench/report/program.h"
 #include "evaluation/guidance/guidance_study.h"
 
 #include <fmt/core.h>

@@ -136,11 +136,12 @@ void plain_vertex_colours(benchmark::State& state) {
 }
 
 // How a light field is drawn: by the shader of its fitter, or evaluated on the CPU.
-void draw(benchmark::State& state, const fitting::LightField& model, bool on_cpu = false) {
+void draw(benchmark::State& state, const fitting::PatchLightField& model, bool on_cpu = false) {
   const bench::Walk& walk = bench::walk_round(kVertices);
   const core::CameraModel eye = camera();
-  const auto patches = on_cpu ? render::evaluated::make_patch_shader(stage().gl, walk.mesh, model)
-                              : render::make_patch_shader(stage().gl, model);
+  const auto patches = on_cpu
+                           ? render::evaluated::make_patch_shader(stage().gl, walk.mesh, model, 1)
+                           : render::make_patch_shader(stage().gl, model);
   render::SurfacePass pass(stage().gl, walk.mesh, patches->glsl());
   std::size_t view = 0;
   for (auto _ : state) {

@@ -3,7 +3,7 @@
 // circle that every patch sees from another side.
 #include "core/mesh/neighbours.h"
 #include "core/samples/sample_batch.h"
-#include "fitting/registry.h"
+#include "fitting/sparse/sparse_fitter.h"
 
 #include <benchmark/benchmark.h>
 
@@ -20,12 +20,10 @@ constexpr std::size_t kPatches = 31000;
 // Part of the patches that a view sees, as measured on a closed mesh.
 constexpr std::size_t kSeen = kPatches * 28 / 100;
 
-std::unique_ptr<Fitter> make_sparse(int threads) {
+std::unique_ptr<PatchFitter> make_sparse(int threads) {
   core::VertexNeighbours nobody;
   nobody.offsets.assign(kPatches + 1, 0);
-  FitOptions options;
-  options.threads = threads;
-  return make_fitter("sparse", nobody, options);
+  return sparse::make_sparse_fitter(nobody, {}, threads);
 }
 
 // A grey patch, every third with a highlight about 20 degrees wide at a place of its own.
@@ -77,7 +75,7 @@ class Walk {
 constexpr double kPerNanosecond = 1e-9;
 
 // Goes on along a walk; the making of the samples is not measured.
-void integrate(benchmark::State& state, Fitter& fitter, Walk& walk) {
+void integrate(benchmark::State& state, PatchFitter& fitter, Walk& walk) {
   for (auto _ : state) {
     state.PauseTiming();
     const core::SampleBatch& batch = walk.next();
@@ -106,7 +104,7 @@ void integrate_growing(benchmark::State& state) {
 }
 BENCHMARK(integrate_growing)->Unit(benchmark::kMillisecond)->Iterations(120);
 
-std::unique_ptr<Fitter> taught(int views) {
+std::unique_ptr<PatchFitter> taught(int views) {
   auto fitter = make_sparse(1);
   Walk walk(2.0f);
   for (int view = 0; view < views; ++view) fitter->integrate(walk.next());

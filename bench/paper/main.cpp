@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "bench/report/program.h"
 #include "evaluation/paper/paper_experiments.h"
 
 #include <fmt/core.h>

@@ -6,10 +6,9 @@
 #include "capture/synthetic/camera_path.h"
 #include "capture/synthetic/hash.h"
 #include "core/diagnostics/cpu_clock.h"
-#include "core/mesh/neighbours.h"
-#include "core/samples/sample_batch.h"
+#include "core/samples/observation.h"
 #include "core/visibility/raster_visibility.h"
-#include "fitting/registry.h"
+#include "fitting/descriptor.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -105,15 +104,14 @@ void run(const ScaleOptions& options) {
   const core::SurfacePoints points = core::surface_points(walk.mesh);
   const auto visibility = core::make_raster_visibility(walk.mesh, options.threads);
   const GlossyObject object(walk.mesh);
-  fitting::FitOptions fit_options;
-  fit_options.threads = options.threads;
   const auto fitter = fitting::make_fitter(options.fitter == "quadtree" ? "iwls" : options.fitter,
-                                           core::vertex_neighbours(walk.mesh), fit_options);
+                                           walk.mesh, {}, options.threads);
   const auto path = path_round(walk.mesh, options.views);
 
   fmt::print("fitter,vertices,views,peak_rss_mb,visibility_ms,fit_ms\n");
   core::VertexView view;
   core::SampleBatch batch;
+  const cv::Mat no_image;
   Line line;
   int next_line = 60;
   for (int v = 0; v < options.views; ++v) {
@@ -125,7 +123,7 @@ void run(const ScaleOptions& options) {
     const double seen_ms = core::own_cpu_ms();
     object.photograph(view, core::eye_in_object(pose), static_cast<std::uint32_t>(v), batch);
     const double photographed_ms = core::own_cpu_ms();
-    fitter->integrate(batch);
+    fitter->integrate({v, no_image, walk.camera, pose, view, batch});
     line.visibility_ms += seen_ms - begin_ms;
     line.fit_ms += core::own_cpu_ms() - photographed_ms;
     ++line.views;

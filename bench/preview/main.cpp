@@ -7,12 +7,7 @@
 #include "bench/preview/camera_pace.h"
 #include "capture/session/session.h"
 #include "core/diagnostics/cpu_clock.h"
-#include "core/mesh/neighbours.h"
-#include "core/visibility/raster_visibility.h"
-#include "fitting/descriptor.h"
-#include "pipeline/model_stage.h"
-#include "pipeline/pipeline.h"
-#include "pipeline/session_parts.h"
+#include "pipeline/reconstruct.h"
 
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
@@ -39,60 +34,36 @@ struct PaceOptions {
 /// The pipeline of `sheen replay --preview` over a recording that comes in at a camera's pace.
 class Capture {
  public:
-  Capture(const PaceOptions& options, const capture::Session& session, const core::Mesh& mesh)
-      : mesh_(mesh),
-        session_(session),
-        threads_(options.threads),
-        history_([neighbours = core::vertex_neighbours(mesh), threads = options.threads] {
-          fitting::FitOptions fit;
-          fit.threads = threads;
-          return fitting::make_fitter("sparse", neighbours, fit);
-        }),
-        model_(history_),
-        live_({.model = model_,
-               .history = history_,
+  Capture(const PaceOptions& options, const capture::Session& session)
+      : pace_(options.fps),
+        fitted_({.session = session,
+                 .frames = std::make_unique<PacedSource>(capture::open_frames(session), pace_)},
+                {.undoable = true, .threads = options.threads}, sink_),
+        live_({.model = fitted_.model(),
+               .history = *fitted_.history(),
                .baseline = nullptr,
-               .mesh = mesh,
+               .mesh = fitted_.mesh(),
                .camera = session.camera,
                .board_from_object = session.board_from_object,
                .limits = {},
                .is_camera = true,
-               .save = {}}),
-        pace_(options.fps) {}
+               .save = {}}) {}
 
   app::LiveSession& live() { return live_; }
   [[nodiscard]] bool is_done() const { return is_done_; }
   [[nodiscard]] int dropped() const { return pace_.dropped(); }
 
   void run() {
-    app::PoseStage poses(std::make_unique<PacedSource>(capture::open_frames(session_), pace_),
-                         app::make_pose_estimator(session_, app::PoseSource::automatic, {}));
-    app::ModelStage stage(
-        {.visibility = core::make_raster_visibility(mesh_, threads_),
-         .mesh = mesh_,
-         .camera = session_.camera,
-         .board_from_object = session_.board_from_object,
-         .limits = {},
-         .model = model_,
-         .baseline = nullptr,
-         .hold_out = {0},
-         .threads = threads_,
-         .admit = [&](const core::SampleBatch& batch) { return live_.admit(batch); }});
-    app::run_pipeline(poses, stage, true, [&](const app::TrackedFrame& tracked) {
-      live_.on_frame(tracked, stage.statistics());
-    });
+    fitted_.run(sink_, &live_);
     live_.finish();
     is_done_ = true;
   }
 
  private:
-  const core::Mesh& mesh_;
-  const capture::Session& session_;
-  int threads_;
-  fitting::UndoableFitter history_;
-  app::SharedModel model_;
-  app::LiveSession live_;
   CameraPace pace_;
+  pipeline::ProgressSink sink_;
+  pipeline::Reconstruction fitted_;
+  app::LiveSession live_;
   std::atomic<bool> is_done_{false};
 };
 
@@ -117,12 +88,13 @@ void measure(const char* what, app::PreviewWindow& window, const Capture& captur
 
 void run(const PaceOptions& options) {
   const capture::Session session = capture::open_session(options.session);
-  const core::Mesh mesh = app::read_object_mesh(session.mesh);
   fmt::print("view,redraws_per_s,cores,frames_dropped\n");
   for (const bool turns : {true, false}) {
-    Capture capture(options, session, mesh);
-    app::PreviewWindow window(
-        {.title = "Sheen", .mesh = mesh, .up = capture.live().up(), .live = &capture.live()});
+    Capture capture(options, session);
+    app::PreviewWindow window({.title = "Sheen",
+                               .mesh = capture.live().mesh(),
+                               .up = capture.live().up(),
+                               .live = &capture.live()});
     window.redraw(0);
     std::jthread pipeline([&] { capture.run(); });
     measure(turns ? "turning" : "resting", window, capture, turns,

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "bench/report/program.h"
 #include "evaluation/scene/scene_study.h"
 #include "evaluation/scene/scene_tables.h"
 

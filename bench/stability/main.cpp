@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "bench/report/program.h"
 #include "evaluation/stability/confidence.h"
 #include "evaluation/stability/stability_suite.h"
 #include "evaluation/stability/stability_tables.h"

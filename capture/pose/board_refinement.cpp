@@ -73,16 +73,17 @@ class Adjustment {
     }
   }
 
-  Adjustment(const Board& board, LensParameters& lens, std::vector<PosedView>& views,
+  Adjustment(const Board& board, core::LensKind kind, LensParameters& lens,
+             std::vector<PosedView>& views,
              std::map<int, Parameters>& tags) {
     for (PosedView& view : views) {
       for (const TagDetection& tag : view.tags) {
-        problem_.AddResidualBlock(tag_and_lens_residual(tag, board.tags.at(tag.id).size_m),
+        problem_.AddResidualBlock(tag_and_lens_residual(kind, tag, board.tags.at(tag.id).size_m),
                                   new ceres::HuberLoss(kHuberPx), view.camera_from_board.data(),
                                   tags[tag.id].data(), lens.data());
       }
     }
-    // The higher radial terms are free only where the given lens has them.
+    // The higher terms are free only where the given lens has them.
     std::vector<int> fixed;
     for (std::size_t i = kFirstHighTerm; i < lens.size(); ++i) {
       if (lens[i] == 0) fixed.push_back(static_cast<int>(i));
@@ -209,7 +210,7 @@ std::optional<BoardRefinement> refine_board(const Board& board, const core::Came
   result.rms_after_px = adjustment.rms_px();
   if (lens_refinement == LensRefinement::on) {
     LensParameters lens = lens_parameters(camera);
-    Adjustment with_lens(board, lens, posed, tags);
+    Adjustment with_lens(board, camera.intrinsics().lens, lens, posed, tags);
     free_tags(with_lens, tags);
     with_lens.solve();
     result.rms_after_px = with_lens.rms_px();

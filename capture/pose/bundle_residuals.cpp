@@ -81,7 +81,8 @@ class TagResidual {
 
 class TagAndLensResidual {
  public:
-  TagAndLensResidual(const TagDetection& seen, double size_m) : seen_(seen), half_m_(size_m / 2) {}
+  TagAndLensResidual(core::LensKind kind, const TagDetection& seen, double size_m)
+      : kind_(kind), seen_(seen), half_m_(size_m / 2) {}
 
   template <typename T>
   bool operator()(const T* camera_from_board, const T* board_from_tag, const T* lens,
@@ -99,17 +100,15 @@ class TagAndLensResidual {
  private:
   /// core::CameraModel::project, of the lens too.
   template <typename T>
-  static void project(const T* lens, const T* point, T* pixel) {
-    const T x = point[0] / point[2];
-    const T y = point[1] / point[2];
-    const T r2 = x * x + y * y;
-    const T* k = lens + 4;
-    const T radial = (T(1) + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) /
-                     (T(1) + r2 * (k[5] + r2 * (k[6] + r2 * k[7])));
-    pixel[0] = lens[0] * (x * radial + T(2) * k[2] * x * y + k[3] * (r2 + T(2) * x * x)) + lens[2];
-    pixel[1] = lens[1] * (y * radial + k[2] * (r2 + T(2) * y * y) + T(2) * k[3] * x * y) + lens[3];
+  void project(const T* lens, const T* point, T* pixel) const {
+    T u;
+    T v;
+    core::distort(kind_, lens + 4, T(point[0] / point[2]), T(point[1] / point[2]), u, v);
+    pixel[0] = lens[0] * u + lens[2];
+    pixel[1] = lens[1] * v + lens[3];
   }
 
+  core::LensKind kind_;
   const TagDetection& seen_;
   double half_m_;
 };
@@ -155,9 +154,10 @@ ceres::CostFunction* tag_residual(const core::CameraModel& camera, const TagDete
       new TagResidual(camera, seen, size_m));
 }
 
-ceres::CostFunction* tag_and_lens_residual(const TagDetection& seen, double size_m) {
+ceres::CostFunction* tag_and_lens_residual(core::LensKind kind, const TagDetection& seen,
+                                           double size_m) {
   return new ceres::AutoDiffCostFunction<TagAndLensResidual, 8, 6, 6, 12>(
-      new TagAndLensResidual(seen, size_m));
+      new TagAndLensResidual(kind, seen, size_m));
 }
 
 }  // namespace sheen::capture

@@ -17,9 +17,9 @@ using Parameters = std::array<double, 6>;
 Parameters to_parameters(const Eigen::Isometry3d& transform);
 Eigen::Isometry3d to_isometry(const Parameters& parameters);
 
-/// Focal lengths, principal point, k1 k2 p1 p2 k3 k4 k5 k6.
+/// Focal lengths, principal point, the lens's eight coefficients.
 using LensParameters = std::array<double, 12>;
-inline constexpr std::size_t kFirstHighTerm = 8;  ///< index of k3
+inline constexpr std::size_t kFirstHighTerm = 8;  ///< index of a rational lens's k3
 
 LensParameters lens_parameters(const core::CameraModel& camera);
 
@@ -32,7 +32,8 @@ core::CameraModel camera_with(const LensParameters& lens, const core::CameraMode
 ceres::CostFunction* tag_residual(const core::CameraModel& camera, const TagDetection& seen,
                                   double size_m);
 
-/// The same of camera_from_board, board_from_tag and the lens (LensParameters).
-ceres::CostFunction* tag_and_lens_residual(const TagDetection& seen, double size_m);
+/// The same of camera_from_board, board_from_tag and the lens (LensParameters) of this kind.
+ceres::CostFunction* tag_and_lens_residual(core::LensKind kind, const TagDetection& seen,
+                                           double size_m);
 
 }  // namespace sheen::capture

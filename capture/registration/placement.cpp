@@ -3,9 +3,9 @@
 
 #include "capture/files/text_file.h"
 #include "core/diagnostics/error.h"
+#include "core/geometry/principal_axes.h"
 #include "core/mesh/bounds.h"
 
-#include <Eigen/SVD>
 
 #include <algorithm>
 #include <cmath>
@@ -69,8 +69,8 @@ PairPlacement place_by_pairs(const std::vector<PointPair>& pairs,
     board.col(i) = pairs[static_cast<std::size_t>(i)].in_board;
   }
   for (const Eigen::Matrix3Xd& points : {object, board}) {
-    const Eigen::JacobiSVD<Eigen::Matrix3Xd> svd(points.colwise() - points.rowwise().mean());
-    if (!(svd.singularValues()[1] > kNarrowest * svd.singularValues()[0])) {
+    const Eigen::Vector3d spread = core::principal_axes(points).spread;
+    if (!(spread[1] > kNarrowest * spread[0])) {
       throw core::bad_input(path, "holds points on one line", "pick three that span a triangle");
     }
   }

@@ -73,6 +73,10 @@ class ImageFolderSource : public FrameSource {
     if (next_ >= end_) return std::nullopt;
     const auto path = session_folder_ / name_.at(first_ + next_);
     cv::Mat image;
+    std::error_code no_throw;
+    if (!std::filesystem::is_regular_file(path, no_throw)) {  // a pipe would wait for ever
+      throw core::bad_input(path, "is no file", "put an image there");
+    }
     try {
       image = cv::imread(path.string(), cv::IMREAD_COLOR);
     } catch (const cv::Exception&) {

@@ -1,25 +1,19 @@
 // SPDX-License-Identifier: MIT
 #include "core/alignment/projection_derivative.h"
 
+#include "core/numerics/dual.h"
+
 namespace sheen::core {
 namespace {
 
 /// Derivative of CameraModel::distort at `ideal`.
-Eigen::Matrix2d distortion_derivative(const std::array<double, 8>& k,
+Eigen::Matrix2d distortion_derivative(const CameraModel::Intrinsics& intrinsics,
                                       const Eigen::Vector2d& ideal) {
-  const double x = ideal.x();
-  const double y = ideal.y();
-  const double r2 = ideal.squaredNorm();
-  const double upper = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]));
-  const double lower = 1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7]));
-  const double upper_slope = k[0] + r2 * (2 * k[1] + r2 * 3 * k[4]);
-  const double lower_slope = k[5] + r2 * (2 * k[6] + r2 * 3 * k[7]);
-  const double radial = upper / lower;
-  const double slope = (upper_slope - radial * lower_slope) / lower;  // of `radial` by r2
-  const double mixed = 2 * x * y * slope + 2 * k[2] * x + 2 * k[3] * y;
+  Dual u;
+  Dual v;
+  distort(intrinsics.lens, intrinsics.distortion.data(), Dual(ideal.x(), 1, 0), Dual(ideal.y(), 0, 1), u, v);
   Eigen::Matrix2d J;
-  J << radial + 2 * x * x * slope + 2 * k[2] * y + 6 * k[3] * x, mixed,  //
-      mixed, radial + 2 * y * y * slope + 6 * k[2] * y + 2 * k[3] * x;
+  J << u.dx, u.dy, v.dx, v.dy;
   return J;
 }
 
@@ -37,7 +31,7 @@ std::optional<ProjectedPoint> project_with_derivative(const CameraModel& camera,
       0, inverse_depth, -ideal.y() * inverse_depth;
   return ProjectedPoint{*pixel,
                         lens.focal_px.asDiagonal() *
-                            (distortion_derivative(lens.distortion, ideal) * ideal_by_point)};
+                            (distortion_derivative(lens, ideal) * ideal_by_point)};
 }
 
 }  // namespace sheen::core

@@ -3,49 +3,75 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <cmath>
 
 namespace sheen::core {
 namespace {
 
-constexpr double kWidestRadius = 6.0;  // tan(80.5 degrees): no lens of this model is wider
-
-double radial_factor(const std::array<double, 8>& k, double r2) {
-  return (1 + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) / (1 + r2 * (k[5] + r2 * (k[6] + r2 * k[7])));
+Eigen::Vector2d distorted_by(const CameraModel::Intrinsics& intrinsics,
+                             const Eigen::Vector2d& ideal) {
+  Eigen::Vector2d moved;
+  distort(intrinsics.lens, intrinsics.distortion.data(), ideal.x(), ideal.y(), moved.x(),
+          moved.y());
+  return moved;
 }
 
-/// First radius at which r * radial_factor(r) stops growing.
-double find_valid_radius(const std::array<double, 8>& k) {
+/// How far the radial part of the lens moves a point at this radius.
+double radial_position(const CameraModel::Intrinsics& intrinsics, double radius) {
+  CameraModel::Intrinsics radial = intrinsics;
+  if (radial.lens == LensKind::rational) radial.distortion[2] = radial.distortion[3] = 0;
+  return distorted_by(radial, {radius, 0}).x();
+}
+
+/// First radius at which the radial part stops growing.
+double find_valid_radius(const CameraModel::Intrinsics& intrinsics) {
   constexpr double step = 0.002;
+  const double widest = traits_of(intrinsics.lens).widest_radius;
   double previous = 0;
-  for (double r = step; r < kWidestRadius; r += step) {
-    const double distorted = r * radial_factor(k, r * r);
+  for (double r = step; r < widest; r += step) {
+    const double distorted = radial_position(intrinsics, r);
     if (!(distorted > previous)) return r - step;
     previous = distorted;
   }
-  return kWidestRadius;
+  return widest;
+}
+
+/// Where the search for the inverse begins: wide lenses move points too far for Newton's steps to
+/// find back from there, so the radius is bisected.
+Eigen::Vector2d first_ideal(const CameraModel::Intrinsics& intrinsics, double valid_radius,
+                            const Eigen::Vector2d& distorted) {
+  const double wanted = distorted.norm();
+  if (intrinsics.lens == LensKind::rational || wanted < 1e-9) return distorted;
+  double low = 0;
+  double high = valid_radius;
+  for (int step = 0; step < 40; ++step) {
+    const double middle = (low + high) / 2;
+    (radial_position(intrinsics, middle) < wanted ? low : high) = middle;
+  }
+  return distorted * (low / wanted);
 }
 
 }  // namespace
 
 CameraModel::CameraModel(const Intrinsics& intrinsics)
-    : intrinsics_(intrinsics), valid_radius_(find_valid_radius(intrinsics.distortion)) {}
+    : intrinsics_(intrinsics), valid_radius_(find_valid_radius(intrinsics)) {}
+
+bool CameraModel::curves_lines() const {
+  const auto& k = intrinsics_.distortion;
+  return intrinsics_.lens != LensKind::rational ||
+         std::any_of(k.begin(), k.end(), [](double value) { return value != 0; });
+}
 
 Eigen::Vector2d CameraModel::distort(const Eigen::Vector2d& ideal) const {
-  const auto& k = intrinsics_.distortion;
-  const double x = ideal.x();
-  const double y = ideal.y();
-  const double r2 = ideal.squaredNorm();
-  const double radial = radial_factor(k, r2);
-  return {x * radial + 2 * k[2] * x * y + k[3] * (r2 + 2 * x * x),
-          y * radial + k[2] * (r2 + 2 * y * y) + 2 * k[3] * x * y};
+  return distorted_by(intrinsics_, ideal);
 }
 
 std::optional<Eigen::Vector2d> CameraModel::undistort(const Eigen::Vector2d& distorted) const {
   constexpr int max_steps = 30;
   constexpr double tolerance = 1e-12;
   constexpr double h = 1e-6;
-  Eigen::Vector2d ideal = distorted;
+  Eigen::Vector2d ideal = first_ideal(intrinsics_, valid_radius_, distorted);
   if (ideal.norm() > valid_radius_) ideal *= valid_radius_ / ideal.norm();
   for (int step = 0; step < max_steps; ++step) {
     const Eigen::Vector2d residual = distort(ideal) - distorted;

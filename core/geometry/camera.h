@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/geometry/lens/lens.h"
+
 #include <Eigen/Core>
 
 #include <array>
@@ -8,7 +10,7 @@
 
 namespace sheen::core {
 
-/// OpenCV's pinhole camera with rational radial and tangential distortion (docs/conventions.md).
+/// A camera with a lens (docs/conventions.md; core/geometry/lens/lens.h has the kinds of lenses).
 /// Camera frame: x right, y down, z forward. Pixel (0, 0) is the centre of the first pixel.
 class CameraModel {
  public:
@@ -17,8 +19,11 @@ class CameraModel {
     int height_px = 0;
     Eigen::Vector2d focal_px{0, 0};
     Eigen::Vector2d principal_px{0, 0};
-    /// k1 k2 p1 p2 k3 k4 k5 k6; the missing ones of a 4- or 5-coefficient model are zero.
+    /// Of a rational lens k1 k2 p1 p2 k3 k4 k5 k6, of a fisheye k1 k2 k3 k4; the others are zero.
     std::array<double, 8> distortion{};
+    LensKind lens = LensKind::rational;
+
+    friend bool operator==(const Intrinsics&, const Intrinsics&) = default;
   };
 
   CameraModel() = default;
@@ -28,9 +33,12 @@ class CameraModel {
   [[nodiscard]] int width_px() const { return intrinsics_.width_px; }
   [[nodiscard]] int height_px() const { return intrinsics_.height_px; }
 
-  /// Largest distance from the optical axis, in the plane z = 1, up to which the radial polynomial
-  /// grows. Beyond it the polynomial folds back and points far outside would land in the image.
+  /// Largest distance from the optical axis, in the plane z = 1, up to which the lens moves points
+  /// outwards. Beyond it the polynomial folds back and points far outside would land in the image.
   [[nodiscard]] double valid_radius() const { return valid_radius_; }
+
+  /// Whether straight lines are curved in the image.
+  [[nodiscard]] bool curves_lines() const;
 
   /// Ideal position in the plane z = 1 -> position the lens makes of it, same plane.
   [[nodiscard]] Eigen::Vector2d distort(const Eigen::Vector2d& ideal) const;

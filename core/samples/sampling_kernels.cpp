@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "core/samples/sampling_kernels.h"
 
+#include "core/numerics/kernel_sets.h"
+
 #include <bit>
 
 namespace sheen::core {
@@ -11,17 +13,12 @@ static_assert(std::endian::native == std::endian::little, "pixels are read as wo
 SamplingKernels portable_sampling_kernels();
 #ifdef SHEEN_HAS_AVX2_KERNELS
 SamplingKernels avx2_sampling_kernels();
+#else
+constexpr SamplingKernels (*avx2_sampling_kernels)() = nullptr;
 #endif
 
 const std::vector<SamplingKernels>& sampling_kernel_sets() {
-  static const auto sets = [] {
-    std::vector<SamplingKernels> of_this_processor;
-#ifdef SHEEN_HAS_AVX2_KERNELS
-    if (__builtin_cpu_supports("avx2")) of_this_processor.push_back(avx2_sampling_kernels());
-#endif
-    of_this_processor.push_back(portable_sampling_kernels());
-    return of_this_processor;
-  }();
+  static const auto sets = kernel_sets(portable_sampling_kernels, avx2_sampling_kernels);
   return sets;
 }
 

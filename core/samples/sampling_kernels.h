@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/geometry/lens/lens.h"
 #include "core/samples/vertex_view.h"
 
 #include <cstddef>
@@ -17,7 +18,8 @@ struct ProjectionSetup {
   float eye[3];          ///< object frame, metres
   float focal_px[2];
   float principal_px[2];
-  float distortion[8];  ///< k1 k2 p1 p2 k3 k4 k5 k6
+  LensKind lens;
+  float distortion[8];  ///< of the lens, core/geometry/lens/lens.h
   float valid_radius2;  ///< CameraModel::valid_radius, squared
   float low_px;         ///< where pixels may lie, both directions
   float high_px[2];     ///< and up to where

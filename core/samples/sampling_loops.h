@@ -11,19 +11,43 @@
 
 namespace sheen::core::SHEEN_LANES {
 
-/// OpenCV's lens: ideal position in the plane z = 1 -> pixel.
-struct Lens {
-  const ProjectionSetup& s;
+// The lenses, once more for these instructions.
+using Real = float;
 
-  void operator()(float x, float y, float r2, float& x_px, float& y_px) const {
-    const float* k = s.distortion;
-    const float radial = (1.0f + r2 * (k[0] + r2 * (k[1] + r2 * k[4]))) /
-                         (1.0f + r2 * (k[5] + r2 * (k[6] + r2 * k[7])));
-    const float xy2 = 2.0f * x * y;
-    const float distorted_x = x * radial + k[2] * xy2 + k[3] * (r2 + 2.0f * x * x);
-    const float distorted_y = y * radial + k[2] * (r2 + 2.0f * y * y) + k[3] * xy2;
-    x_px = s.focal_px[0] * distorted_x + s.principal_px[0];
-    y_px = s.focal_px[1] * distorted_y + s.principal_px[1];
+inline float sqrt(float x) { return __builtin_sqrtf(x); }
+
+/// Arc tangent of x >= 0, to 2e-7: a polynomial below tan(pi/8), else turned there by atan(x) =
+/// pi/4 + atan((x - 1) / (x + 1)) or pi/2 - atan(1 / x).
+inline float atan(float x) {
+  const bool is_large = x > 2.41421356f;
+  const bool is_middle = x > 0.41421356f;
+  const float t = is_large ? -1.0f / x : is_middle ? (x - 1.0f) / (x + 1.0f) : x;
+  const float base = is_large ? 1.57079633f : is_middle ? 0.78539816f : 0.0f;
+  const float t2 = t * t;
+  const float series =
+      t + t * t2 *
+              (-0.333329491539f +
+               t2 * (0.199777106478f + t2 * (-0.138776856032f + t2 * 0.0805374449538f)));
+  return base + series;
+}
+
+#define LENS_FUNCTION inline
+#define LENS_ARRAY(name) const float* name
+#define LENS_OUT(name) float& name
+#include "core/geometry/lens/fisheye.lens"
+#include "core/geometry/lens/rational.lens"
+#undef LENS_FUNCTION
+#undef LENS_ARRAY
+#undef LENS_OUT
+
+struct Rational {
+  static void distort(const float* k, float x, float y, float& u, float& v) {
+    distort_rational(k, x, y, u, v);
+  }
+};
+struct Fisheye {
+  static void distort(const float* k, float x, float y, float& u, float& v) {
+    distort_fisheye(k, x, y, u, v);
   }
 };
 
@@ -54,12 +78,12 @@ inline Direction direction(float wx, float wy, float wz, float nx, float ny, flo
   return {u * to_unit, v * to_unit, (wx * nx + wy * ny + wz * nz) * to_unit};
 }
 
-inline void project(const ProjectionSetup& setup, const ProjectionColumns& at, std::size_t begin,
-                    std::size_t end) {
+template <typename Lens>
+inline void project_through(const ProjectionSetup& setup, const ProjectionColumns& at,
+                            std::size_t begin, std::size_t end) {
   // Copies, since the compiler cannot know that the columns do not hold the setup.
   const ProjectionSetup s = setup;
   const ProjectionColumns c = at;
-  const Lens lens{s};
   const float* R = s.rotation;
 #pragma GCC ivdep
   for (std::size_t i = begin; i < end; ++i) {
@@ -71,9 +95,11 @@ inline void project(const ProjectionSetup& setup, const ProjectionColumns& at, s
     const float ideal_x = (R[0] * x + R[1] * y + R[2] * z + s.translation[0]) * inverse_depth;
     const float ideal_y = (R[3] * x + R[4] * y + R[5] * z + s.translation[1]) * inverse_depth;
     const float r2 = ideal_x * ideal_x + ideal_y * ideal_y;
-    float x_px;
-    float y_px;
-    lens(ideal_x, ideal_y, r2, x_px, y_px);
+    float distorted_x;
+    float distorted_y;
+    Lens::distort(s.distortion, ideal_x, ideal_y, distorted_x, distorted_y);
+    const float x_px = s.focal_px[0] * distorted_x + s.principal_px[0];
+    const float y_px = s.focal_px[1] * distorted_y + s.principal_px[1];
     const bool projects = (depth > 0.0f) & (r2 <= s.valid_radius2);
     const bool inside = projects & (x_px >= s.low_px) & (x_px <= s.high_px[0]) &
                         (y_px >= s.low_px) & (y_px <= s.high_px[1]);
@@ -86,6 +112,16 @@ inline void project(const ProjectionSetup& setup, const ProjectionColumns& at, s
     c.v[i] = towards_eye.v;
     c.rejection[i] =
         static_cast<VertexRejection>(first_failure(inside, towards_eye.cosine, s.min_cosine));
+  }
+}
+
+inline void project(const ProjectionSetup& setup, const ProjectionColumns& at, std::size_t begin,
+                    std::size_t end) {
+  switch (setup.lens) {
+    case LensKind::rational:
+      return project_through<Rational>(setup, at, begin, end);
+    case LensKind::fisheye:
+      return project_through<Fisheye>(setup, at, begin, end);
   }
 }
 

@@ -35,6 +35,7 @@ ProjectionSetup projection_setup(const CameraModel& camera,
     setup.focal_px[i] = static_cast<float>(lens.focal_px[i]);
     setup.principal_px[i] = static_cast<float>(lens.principal_px[i]);
   }
+  setup.lens = lens.lens;
   std::transform(lens.distortion.begin(), lens.distortion.end(), setup.distortion,
                  [](double k) { return static_cast<float>(k); });
   setup.valid_radius2 = static_cast<float>(camera.valid_radius() * camera.valid_radius());

@@ -1,63 +1,38 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/iwls/quad_kernels.h"
 
+#include "core/numerics/kernel_sets.h"
+
 namespace sheen::fitting::iwls {
 
 // One file each: quad_kernels_*.cpp.
-void fill_portable_kernels(QuadKernelSet<float>& set);
-void fill_portable_kernels(QuadKernelSet<double>& set);
+QuadKernelSet<float> portable_quad_kernels();
+QuadKernelSet<double> portable_exact_quad_kernels();
 EvaluateKernels portable_evaluate_kernels();
 #ifdef SHEEN_HAS_AVX2_KERNELS
-void fill_avx2_kernels(QuadKernelSet<float>& set);
-void fill_avx2_kernels(QuadKernelSet<double>& set);
+QuadKernelSet<float> avx2_quad_kernels();
+QuadKernelSet<double> avx2_exact_quad_kernels();
 EvaluateKernels avx2_evaluate_kernels();
-#endif
-
-namespace {
-
-bool has_avx2() {
-#ifdef SHEEN_HAS_AVX2_KERNELS
-  return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("f16c");
 #else
-  return false;
+constexpr QuadKernelSet<float> (*avx2_quad_kernels)() = nullptr;
+constexpr QuadKernelSet<double> (*avx2_exact_quad_kernels)() = nullptr;
+constexpr EvaluateKernels (*avx2_evaluate_kernels)() = nullptr;
 #endif
-}
-
-template <typename Real>
-std::vector<QuadKernelSet<Real>> sets_of_this_processor() {
-  std::vector<QuadKernelSet<Real>> sets;
-#ifdef SHEEN_HAS_AVX2_KERNELS
-  if (has_avx2()) {
-    fill_avx2_kernels(sets.emplace_back(QuadKernelSet<Real>{"avx2", {}, {}, {}}));
-  }
-#endif
-  fill_portable_kernels(sets.emplace_back(QuadKernelSet<Real>{"portable", {}, {}, {}}));
-  return sets;
-}
-
-EvaluateKernels best_evaluate_kernels() {
-#ifdef SHEEN_HAS_AVX2_KERNELS
-  if (has_avx2()) return avx2_evaluate_kernels();
-#endif
-  return portable_evaluate_kernels();
-}
-
-}  // namespace
 
 const EvaluateKernels& evaluate_kernels() {
-  static const EvaluateKernels kernels = best_evaluate_kernels();
-  return kernels;
+  static const auto sets = core::kernel_sets(portable_evaluate_kernels, avx2_evaluate_kernels);
+  return sets.front();
 }
 
 template <>
 const std::vector<QuadKernelSet<float>>& quad_kernel_sets() {
-  static const auto sets = sets_of_this_processor<float>();
+  static const auto sets = core::kernel_sets(portable_quad_kernels, avx2_quad_kernels);
   return sets;
 }
 
 template <>
 const std::vector<QuadKernelSet<double>>& quad_kernel_sets() {
-  static const auto sets = sets_of_this_processor<double>();
+  static const auto sets = core::kernel_sets(portable_exact_quad_kernels, avx2_exact_quad_kernels);
   return sets;
 }
 

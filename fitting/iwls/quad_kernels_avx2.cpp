@@ -5,12 +5,12 @@
 
 namespace sheen::fitting::iwls {
 
-void fill_avx2_kernels(QuadKernelSet<float>& set) {
-  avx2::fill_kernels(set);
+QuadKernelSet<float> avx2_quad_kernels() {
+  return avx2::quad_kernels<float>("avx2");
 }
 
-void fill_avx2_kernels(QuadKernelSet<double>& set) {
-  avx2::fill_kernels(set);
+QuadKernelSet<double> avx2_exact_quad_kernels() {
+  return avx2::quad_kernels<double>("avx2");
 }
 
 EvaluateKernels avx2_evaluate_kernels() {

@@ -3,12 +3,12 @@
 
 namespace sheen::fitting::iwls {
 
-void fill_portable_kernels(QuadKernelSet<float>& set) {
-  portable::fill_kernels(set);
+QuadKernelSet<float> portable_quad_kernels() {
+  return portable::quad_kernels<float>("portable");
 }
 
-void fill_portable_kernels(QuadKernelSet<double>& set) {
-  portable::fill_kernels(set);
+QuadKernelSet<double> portable_exact_quad_kernels() {
+  return portable::quad_kernels<double>("portable");
 }
 
 EvaluateKernels portable_evaluate_kernels() {

@@ -347,10 +347,9 @@ inline EvaluateKernels evaluate_kernels() {
 }
 
 template <typename Real>
-void fill_kernels(QuadKernelSet<Real>& set) {
-  set.one_term = kernels_of_terms<Real, 1>();
-  set.three_terms = kernels_of_terms<Real, 3>();
-  set.six_terms = kernels_of_terms<Real, 6>();
+QuadKernelSet<Real> quad_kernels(std::string_view instruction_set) {
+  return {instruction_set, kernels_of_terms<Real, 1>(), kernels_of_terms<Real, 3>(),
+          kernels_of_terms<Real, 6>()};
 }
 
 }  // namespace sheen::fitting::iwls::SHEEN_LANES

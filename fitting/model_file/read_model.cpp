@@ -19,9 +19,12 @@ namespace {
 using nlohmann::json;
 
 std::string read_bytes(const std::filesystem::path& path) {
+  // A pipe would wait for ever.
+  std::error_code no_throw;
+  if (!std::filesystem::is_regular_file(path, no_throw)) throw ModelFault("it is no file");
   std::ifstream file(path, std::ios::binary | std::ios::ate);
   const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
-  if (size < 0 || std::filesystem::is_directory(path)) throw ModelFault("it cannot be opened");
+  if (size < 0) throw ModelFault("it cannot be opened");
   if (size > static_cast<std::streamoff>(std::numeric_limits<std::uint32_t>::max())) {
     throw ModelFault("it is larger than a glb file can be");
   }

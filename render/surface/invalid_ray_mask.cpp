@@ -6,13 +6,6 @@
 namespace sheen::render {
 namespace {
 
-bool same(const core::CameraModel& a, const core::CameraModel& b) {
-  const core::CameraModel::Intrinsics& p = a.intrinsics();
-  const core::CameraModel::Intrinsics& q = b.intrinsics();
-  return p.width_px == q.width_px && p.height_px == q.height_px && p.focal_px == q.focal_px &&
-         p.principal_px == q.principal_px && p.distortion == q.distortion;
-}
-
 bool corners_see(const core::CameraModel& camera) {
   for (const double x : {0.0, camera.width_px() - 1.0}) {
     for (const double y : {0.0, camera.height_px() - 1.0}) {
@@ -25,7 +18,7 @@ bool corners_see(const core::CameraModel& camera) {
 }  // namespace
 
 const cv::Mat& InvalidRayMask::of(const core::CameraModel& camera) {
-  if (same(camera, camera_)) return mask_;
+  if (camera.intrinsics() == camera_.intrinsics()) return mask_;
   camera_ = camera;
   mask_.release();
   if (corners_see(camera)) return mask_;

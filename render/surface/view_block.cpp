@@ -15,11 +15,6 @@ std::array<float, 4> floats(double x, double y, double z, double w) {
           static_cast<float>(w)};
 }
 
-bool has_distortion(const core::CameraModel& camera) {
-  const auto& k = camera.intrinsics().distortion;
-  return std::any_of(k.begin(), k.end(), [](double value) { return value != 0; });
-}
-
 /// Distance from the axis, in the plane z = 1, of what the image's corners see.
 double widest_radius(const core::CameraModel& camera) {
   double widest = 0;
@@ -54,15 +49,15 @@ ViewBlock make_view_block(const core::CameraModel& camera,
                           const Eigen::Isometry3d& camera_from_object, double near_m,
                           double longest_segment) {
   const core::CameraModel::Intrinsics& in = camera.intrinsics();
-  const auto& k = in.distortion;
   const Eigen::Vector3d eye = core::eye_in_object(camera_from_object).cast<double>();
   ViewBlock block{};
   Eigen::Map<Eigen::Matrix4f>(block.camera_from_object.data()) =
       camera_from_object.matrix().cast<float>();
   block.pinhole =
       floats(in.focal_px.x(), in.focal_px.y(), in.principal_px.x(), in.principal_px.y());
-  block.low_order = floats(k[0], k[1], k[2], k[3]);
-  block.high_order = floats(k[4], k[5], k[6], k[7]);
+  std::transform(in.distortion.begin(), in.distortion.end(), block.lens.begin(),
+                 [](double k) { return static_cast<float>(k); });
+  block.lens_kind = static_cast<std::int32_t>(in.lens);
   block.eye_and_near = floats(eye.x(), eye.y(), eye.z(), near_m);
   block.image =
       floats(in.width_px, in.height_px, camera.valid_radius(), std::min(longest_segment, 1e9));
@@ -70,16 +65,18 @@ ViewBlock make_view_block(const core::CameraModel& camera,
 }
 
 double longest_straight_segment(const core::CameraModel& camera) {
-  if (!has_distortion(camera)) return std::numeric_limits<double>::infinity();
+  if (!camera.curves_lines()) return std::numeric_limits<double>::infinity();
 
-  // Look for the strongest bend on a grid over the disc that the image sees.
+  // Look for the strongest bend on a grid over the disc of angles that the image sees.
   constexpr int steps = 8;
-  const double radius = std::min(widest_radius(camera), camera.valid_radius());
+  const double widest_rad = std::atan(std::min(widest_radius(camera), camera.valid_radius()));
   double strongest = 0;
   for (int i = -steps; i <= steps; ++i) {
     for (int j = -steps; j <= steps; ++j) {
-      const Eigen::Vector2d p = Eigen::Vector2d(i, j) * (radius / steps);
-      if (p.norm() <= radius * (1 + 1e-9)) strongest = std::max(strongest, curvature(camera, p));
+      const Eigen::Vector2d at(i, j);
+      if (at.norm() > steps * (1 + 1e-9)) continue;
+      const Eigen::Vector2d p = at.stableNormalized() * std::tan(at.norm() / steps * widest_rad);
+      strongest = std::max(strongest, curvature(camera, p));
     }
   }
   const double focal_px = camera.intrinsics().focal_px.maxCoeff();

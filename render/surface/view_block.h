@@ -6,20 +6,22 @@
 #include <Eigen/Geometry>
 
 #include <array>
+#include <cstdint>
 
 namespace sheen::render {
 
 /// How far a straight edge of the mesh may deviate from the curve the lens makes of it, in pixels.
 inline constexpr double kSagittaLimitPx = 0.05;
 
-/// Uniform block `View` of shaders/lens.glsl, std140.
+/// Uniform block `View` of shaders/view_block.glsl, std140.
 struct ViewBlock {
   std::array<float, 16> camera_from_object;  ///< column-major
   std::array<float, 4> pinhole;
-  std::array<float, 4> low_order;
-  std::array<float, 4> high_order;
+  std::array<float, 8> lens;
   std::array<float, 4> eye_and_near;
   std::array<float, 4> image;
+  std::int32_t lens_kind;
+  std::array<std::int32_t, 3> padding;
 };
 
 /// `near_m` is the depth of the near plane, `longest_segment` see below (infinity becomes a large

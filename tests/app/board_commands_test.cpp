@@ -2,8 +2,9 @@
 // `sheen calibrate`, `survey` and `register` on the sample session, whose truth is known.
 #include "capture/calibration/camera_file.h"
 #include "capture/pose/board.h"
+#include "capture/session/keep_before.h"
 #include "capture/session/session.h"
-#include "capture/session/session_edit.h"
+#include "capture/session/session_file.h"
 #include "tests/app/program.h"
 
 #include <Eigen/Geometry>

@@ -59,7 +59,6 @@ class LiveCapture : public testing::Test {
     options_.session = folder_.path() / "walk";
     options_.like = sample_session();
     options_.frames = kFrames;
-    options_.fit.representation = "iwls";
     context_.threads = 2;
     context_.quiet = true;
     context_.json = true;

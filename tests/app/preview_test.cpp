@@ -6,20 +6,20 @@
 #include "app/preview/reasons.h"
 #include "app/preview/redraw_pace.h"
 #include "capture/session/session.h"
-#include "core/mesh/neighbours.h"
 #include "core/visibility/ray_visibility.h"
 #include "fitting/model_file/model_file.h"
-#include "fitting/registry.h"
-#include "pipeline/model_stage.h"
-#include "pipeline/pipeline.h"
-#include "pipeline/session_parts.h"
+#include "pipeline/reconstruct.h"
 #include "tests/app/program.h"
 #include "tests/core/shapes.h"
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <functional>
 #include <numbers>
+#include <semaphore>
 #include <set>
+#include <thread>
 
 namespace sheen::app {
 namespace {
@@ -183,106 +183,135 @@ TEST(Reasons, EveryRefusalHasWords) {
 
 /// The first frames of the sample recording through the real pipeline, with a live session that
 /// nobody looks at.
-class LivePipeline {
+class LivePipeline : private pipeline::FrameListener {
  public:
   explicit LivePipeline(int frames)
-      : session_(capture::open_session(tests::sample_session())),
-        mesh_(read_object_mesh(session_.mesh)),
-        history_([neighbours = core::vertex_neighbours(mesh_)] {
-          return fitting::make_fitter("sh", neighbours, {.iwls = {}, .threads = 1});
-        }),
-        model_(history_),
-        live_(LiveSession::Parts{.model = model_,
-                                 .history = history_,
-                                 .baseline = nullptr,
-                                 .mesh = mesh_,
-                                 .camera = session_.camera,
-                                 .board_from_object = session_.board_from_object,
-                                 .limits = {},
-                                 .save =
-                                     [this](const fitting::LightField& light_field) {
-                                       fitting::write_model(folder_.path() / "early.glb", mesh_,
-                                                            light_field);
-                                       return std::string("saved");
-                                     }}),
-        poses_(capture::open_frames(session_, 0, frames),
-               make_pose_estimator(session_, PoseSource::automatic, {})) {}
+      : fitted_({.session = capture::open_session(tests::sample_session()),
+                 .make_visibility = core::make_ray_visibility},
+                options(frames), sink_),
+        live_({.model = fitted_.model(),
+               .history = *fitted_.history(),
+               .baseline = nullptr,
+               .mesh = fitted_.mesh(),
+               .camera = fitted_.session().camera,
+               .board_from_object = fitted_.session().board_from_object,
+               .limits = {},
+               .save = [this](const fitting::LightField& light_field) {
+                 fitting::write_model(folder_ / "early.glb", fitted_.mesh(), light_field);
+                 return std::string("saved");
+               }}) {}
+
+  using Admit = std::function<bool(int frame)>;
+  using OnFrame = std::function<void(int frame, LiveSession&)>;
 
   /// Runs to the end; `admit` may keep samples out, `on_frame` comes before the session's.
-  void run(const std::function<bool(const core::SampleBatch&, int frame)>& admit,
-           const std::function<void(int frame, LiveSession&)>& on_frame) {
-    int frame = 0;
-    ModelStage stage({.visibility = core::make_ray_visibility(mesh_, 1),
-                      .mesh = mesh_,
-                      .camera = session_.camera,
-                      .board_from_object = session_.board_from_object,
-                      .limits = {},
-                      .model = model_,
-                      .baseline = nullptr,
-                      .hold_out = {},
-                      .admit = [&](const core::SampleBatch& batch) {
-                        return admit(batch, frame) && live_.admit(batch);
-                      }});
-    run_pipeline(poses_, stage, false, [&](const TrackedFrame& tracked) {
-      on_frame(frame++, live_);
-      live_.on_frame(tracked, stage.statistics());
-    });
+  void run(const Admit& admit, const OnFrame& on_frame) {
+    admit_ = admit;
+    on_frame_ = on_frame;
+    fitted_.run(sink_, this);
   }
 
+  /// The model as it is, on the thread that fits.
   [[nodiscard]] std::string model_bytes() {
-    fitting::write_model(folder_.path() / "model.glb", mesh_, history_.light_field());
-    return tests::read_file(folder_.path() / "model.glb");
+    fitting::write_model(folder_ / "model.glb", fitted_.mesh(), fitted_.light_field());
+    return tests::read_file(folder_ / "model.glb");
   }
+  [[nodiscard]] std::string early_copy() const { return tests::read_file(folder_ / "early.glb"); }
   [[nodiscard]] LiveSession& live() { return live_; }
-  [[nodiscard]] std::filesystem::path folder() const { return folder_.path(); }
 
  private:
+  static pipeline::ReconstructionOptions options(int frames) {
+    return {.representation = "sh", .frames = {.end = frames}, .undoable = true};
+  }
+  bool admit(const core::SampleBatch& batch) override {
+    return admit_(frame_) && live_.admit(batch);
+  }
+  void on_frame(const pipeline::TrackedFrame& tracked,
+                const pipeline::FrameStatistics& frames) override {
+    on_frame_(frame_++, live_);
+    live_.on_frame(tracked, frames);
+  }
+
   tests::TemporaryFolder folder_;
-  capture::Session session_;
-  core::Mesh mesh_;
-  fitting::UndoableFitter history_;
-  SharedModel model_;
+  pipeline::ProgressSink sink_;
+  pipeline::Reconstruction fitted_;
   LiveSession live_;
-  PoseStage poses_;
+  Admit admit_;
+  OnFrame on_frame_;
+  int frame_ = 0;
 };
+
+bool always(int /*frame*/) {
+  return true;
+}
 
 TEST(LiveSession, UndoneFramesHaveNeverBeenSeen) {
   // At 30 frames a second, .3 s asked for after frame 19 are frames 11 to 19: 9 frames whose time
   // is later than that of frame 19 less .3 s.
   LivePipeline undone(30);
-  undone.run([](const core::SampleBatch&, int) { return true; },
-             [](int frame, LiveSession& live) {
-               if (frame == 19) live.request_undo(0.3 - 1e-3);
-             });
+  undone.run(always, [](int frame, LiveSession& live) {
+    if (frame == 19) live.request_undo(0.3 - 1e-3);
+  });
   LivePipeline never_saw(30);
-  never_saw.run([](const core::SampleBatch&, int frame) { return frame < 11 || frame > 19; },
-                [](int, LiveSession&) {});
+  never_saw.run([](int frame) { return frame < 11 || frame > 19; }, [](int, LiveSession&) {});
   EXPECT_EQ(undone.model_bytes(), never_saw.model_bytes());
   EXPECT_EQ(undone.live().status().frames_undone, 9);
   EXPECT_EQ(undone.live().status().frames_fitted, 21);
   EXPECT_EQ(undone.live().path_since(0, 0).poses.size(), 21u);
 }
 
+/// Somebody in front of the window, who looks whenever there is something new to see.
+class Person {
+ public:
+  explicit Person(LiveSession& live) : live_(live) {
+    live.set_wake([this] { news_.release(); });
+  }
+  ~Person() { live_.set_wake({}); }
+  Person(const Person&) = delete;
+  Person& operator=(const Person&) = delete;
+  Person(Person&&) = delete;
+  Person& operator=(Person&&) = delete;
+
+  /// Waits until it sees something; false when it never does, which nobody should wait for.
+  template <typename Condition>
+  bool sees(const Condition& condition) {
+    const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (!condition(live_.status())) {
+      if (!news_.try_acquire_until(deadline)) return false;
+    }
+    return true;
+  }
+
+ private:
+  LiveSession& live_;
+  std::counting_semaphore<> news_{0};
+};
+
 TEST(LiveSession, PausedRunsWaitAndSaveMeanwhile) {
   LivePipeline pipeline(6);
-  std::jthread person;
-  pipeline.run([](const core::SampleBatch&, int) { return true; },
-               [&](int frame, LiveSession& live) {
-                 if (frame != 3) return;
-                 live.set_paused(true);
-                 // Somebody who asks for a copy and then lets it go on, as soon as it is paused.
-                 person = std::jthread([&live] {
-                   while (live.status().phase != LiveStatus::Phase::paused) {
-                     std::this_thread::yield();
-                   }
-                   live.request_save();
-                   while (live.status().note != "saved") std::this_thread::yield();
-                   live.set_paused(false);
-                 });
-               });
+  Person person(pipeline.live());
+  bool saw_all = false;
+  // Asks for a copy and then lets it go on, once it is paused. A run that did not wait would be
+  // further on, or over, when it is asked.
+  std::jthread thread([&] {
+    saw_all = person.sees(
+        [](const LiveStatus& status) { return status.phase == LiveStatus::Phase::paused; });
+    pipeline.live().request_save();
+    saw_all &= person.sees([](const LiveStatus& status) { return status.note == "saved"; });
+    pipeline.live().set_paused(false);
+  });
+  std::string after_four;
+  pipeline.run(always, [&](int frame, LiveSession& live) {
+    if (frame != 3) return;
+    after_four = pipeline.model_bytes();
+    live.set_paused(true);
+  });
+  thread.join();
+  EXPECT_TRUE(saw_all);
   EXPECT_EQ(pipeline.live().status().frames_fitted, 6);
   // The copy holds four frames, the model six.
-  EXPECT_NE(tests::read_file(pipeline.folder() / "early.glb"), pipeline.model_bytes());
+  EXPECT_TRUE(pipeline.early_copy() == after_four);
+  EXPECT_FALSE(pipeline.model_bytes() == after_four);
 }
 
 }  // namespace

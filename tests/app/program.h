@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "tests/support/temporary_folder.h"
+
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
@@ -20,25 +22,6 @@ struct ProgramRun {
 
 /// Runs the built `sheen` with these arguments, without a shell, and waits for its end.
 ProgramRun run_sheen(const std::vector<std::string>& arguments);
-
-/// A folder for one test that goes away with it.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  TemporaryFolder(TemporaryFolder&&) = delete;
-  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
-std::string read_file(const std::filesystem::path& path);
-void write_file(const std::filesystem::path& path, const std::string& bytes);
 
 /// The recorded session that comes with the source.
 std::filesystem::path sample_session();

@@ -2,12 +2,22 @@
 // The whole way: recording -> tags -> pose -> visibility -> samples -> fit -> model -> views never
 // seen.
 #include "capture/pose/trajectory.h"
+#include "core/visibility/raster_visibility.h"
+#include "core/visibility/ray_visibility.h"
+#include "pipeline/reconstruct.h"
+#include "render/context/context.h"
+#include "render/visibility/depth_visibility.h"
 #include "tests/app/program.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <iostream>
+#include <map>
+#include <utility>
 
 namespace sheen::tests {
 namespace {
@@ -45,9 +55,21 @@ double psnr(const nlohmann::json& error) {
   return error.at("psnr").get<double>();
 }
 
-class SampleSession : public testing::TestWithParam<std::string> {};
+/// Three times the squared error, in decibels.
+const double kThriceTheError_db = 10 * std::log10(3.0);
 
-INSTANTIATE_TEST_SUITE_P(Fitters, SampleSession, testing::Values("sparse", "quadtree"));
+/// A fitter and by how much it was measured to beat the mean colours, dB.
+struct MeasuredFitter {
+  const char* name;
+  double gain_db;
+};
+
+class SampleSession : public testing::TestWithParam<MeasuredFitter> {};
+
+INSTANTIATE_TEST_SUITE_P(Fitters, SampleSession,
+                         testing::Values(MeasuredFitter{"sparse", 11.4},
+                                         MeasuredFitter{"quadtree", 9.5}),
+                         [](const auto& each) { return std::string(each.param.name); });
 
 TEST_P(SampleSession, IsPosedFromItsTagsAndBeatsMeanColoursOnViewsNeverSeen) {
   const TemporaryFolder folder;
@@ -55,25 +77,26 @@ TEST_P(SampleSession, IsPosedFromItsTagsAndBeatsMeanColoursOnViewsNeverSeen) {
   const auto mean = folder.path() / "mean.glb";
   const auto poses = folder.path() / "poses.txt";
   const ProgramRun replay =
-      run_sheen({"replay", sample_session(), "-o", model, "--fitter", GetParam(), "--mean-out",
+      run_sheen({"replay", sample_session(), "-o", model, "--fitter", GetParam().name, "--mean-out",
                  mean, "--poses-out", poses, "--json", "--quiet"});
   ASSERT_EQ(replay.exit_code, 0) << replay.standard_error;
   const auto report = replay.json();
 
-  // Poses: at least 95 % of the frames, median below 0.3 mm and 0.03 degrees.
-  const double read = report["frames"]["read"];
-  EXPECT_GE(report["frames"]["posed"].get<double>(), 0.95 * read);
+  // Poses: every frame; medians of 0.031 mm and 0.0039 degrees were measured.
+  EXPECT_EQ(report["frames"]["read"], 120);
+  EXPECT_EQ(report["frames"]["posed"], 120);
   const PoseErrors errors = compare_poses(poses, sample_session() / "truth_poses.txt");
-  ASSERT_GE(static_cast<double>(errors.degrees.size()), 0.95 * read);
-  EXPECT_LT(median(errors.millimetres), 0.3);
-  EXPECT_LT(median(errors.degrees), 0.03);
+  ASSERT_EQ(errors.degrees.size(), 120u);
+  EXPECT_LT(median(errors.millimetres), 3 * 0.031);
+  EXPECT_LT(median(errors.degrees), 3 * 0.0039);
 
-  // Clean views beside the path: at least 2 dB above what a textured mesh shows.
+  // Clean views beside the path, against what a textured mesh shows.
   const ProgramRun evaluation = run_sheen(
       {"evaluate", model, sample_session() / "held_out", "--beside", mean, "--json", "--quiet"});
   ASSERT_EQ(evaluation.exit_code, 0) << evaluation.standard_error;
   const auto figures = evaluation.json();
-  EXPECT_GE(psnr(figures["mean"]), psnr(figures["beside"]["mean"]) + 2.0);
+  EXPECT_GE(psnr(figures["mean"]) - psnr(figures["beside"]["mean"]),
+            GetParam().gain_db - kThriceTheError_db);
 }
 
 TEST(MatteScene, IsNotFittedWorseThanByMeanColours) {
@@ -110,20 +133,90 @@ TEST(Replay, IsTheSameByteForByteForAnyNumberOfThreads) {
   EXPECT_EQ(sequential, replay_with("5"));
 }
 
-TEST(Replay, BothVisibilitiesGiveNearlyTheSameSamples) {
-  const TemporaryFolder folder;
-  const auto samples_with = [&](const std::string& visibility) {
-    const ProgramRun run =
-        run_sheen({"replay", sample_session(), "-o", folder.path() / "model.glb", "--end", "8",
-                   "--visibility", visibility, "--json", "--quiet"});
-    EXPECT_EQ(run.exit_code, 0) << run.standard_error;
-    return run.json()["samples"].get<double>();
-  };
-  const double rays = samples_with("rays");
-  EXPECT_NEAR(samples_with("depth"), rays, 0.01 * rays);
+/// Direction and colour of a sample, by frame and patch.
+using Samples = std::map<std::pair<std::size_t, std::uint32_t>, std::array<float, 5>>;
+
+/// Samples of the first frames of the sample session when hidden vertices are found like this.
+Samples samples_with(const pipeline::VisibilityFactory& make_visibility) {
+  struct Collector final : pipeline::FrameListener {
+    bool admit(const core::SampleBatch& batch) override {
+      for (std::size_t i = 0; i < batch.size(); ++i) {
+        samples[{frame, batch.patch[i]}] = {batch.u[i], batch.v[i], batch.r[i], batch.g[i],
+                                            batch.b[i]};
+      }
+      ++frame;
+      return true;
+    }
+    Samples samples;
+    std::size_t frame = 0;
+  } collector;
+  pipeline::ProgressSink sink;
+  pipeline::Reconstruction(
+      {.session = capture::open_session(sample_session()), .make_visibility = make_visibility},
+      {.representation = "mean", .frames = {.end = 8}}, sink)
+      .run(sink, &collector);
+  EXPECT_EQ(collector.frame, 8u);
+  EXPECT_GT(collector.samples.size(), 10000u);
+  return collector.samples;
 }
 
-TEST(Replay, EveryConstructionLayoutAndBasisGivesAFiniteModelThatCanBeDrawn) {
+/// Samples of `a` that `b` lacks; those of both must be the same in every bit.
+double missing_from(const Samples& b, const Samples& a) {
+  std::size_t missing = 0;
+  std::size_t different = 0;
+  for (const auto& [place, sample] : a) {
+    const auto other = b.find(place);
+    if (other == b.end()) {
+      ++missing;
+    } else if (other->second != sample) {
+      ++different;
+    }
+  }
+  EXPECT_EQ(different, 0u);
+  return static_cast<double>(missing) / static_cast<double>(a.size());
+}
+
+// Where the z-buffer's word is in doubt it asks the rays, so that both say the same.
+TEST(Replay, ZBufferIsTheDefaultAndGivesTheSamplesOfRays) {
+  const Samples by_default = samples_with({});
+  EXPECT_TRUE(by_default == samples_with(core::make_raster_visibility));
+  EXPECT_TRUE(by_default == samples_with(core::make_ray_visibility));
+}
+
+// OpenGL's depths are those of pixel centres: next to silhouettes a vertex may fall to either side.
+// Against rays XX and YY of the samples were measured.
+TEST(Replay, DepthsOfOpenGlGiveNearlyTheSamplesOfRays) {
+  const auto gl = render::make_osmesa_context();
+  const Samples depth = samples_with([&](const core::Mesh& mesh, int /*threads*/) {
+    return render::make_depth_visibility(*gl, mesh);
+  });
+  const Samples rays = samples_with(core::make_ray_visibility);
+  const double false_hidden = missing_from(depth, rays);
+  const double false_visible = missing_from(rays, depth);
+  std::cout << "hidden " << false_hidden << " visible " << false_visible << "\n";
+  EXPECT_LT(false_hidden, 3 * 0.001);
+  EXPECT_LT(false_visible, 3 * 0.01);
+}
+
+TEST(Replay, OptionsForVisibilityAreObeyed) {
+  const TemporaryFolder folder;
+  const auto model_with = [&](const std::string& visibility) {
+    const auto model = folder / (visibility + ".glb");
+    const ProgramRun run = run_sheen({"replay", sample_session(), "-o", model, "--end", "8",
+                                      "--visibility", visibility, "--quiet"});
+    EXPECT_EQ(run.exit_code, 0) << run.standard_error;
+    return read_file(model);
+  };
+  const std::string rays = model_with("rays");
+  ASSERT_FALSE(rays.empty());
+  EXPECT_TRUE(model_with("raster") == rays);
+  EXPECT_TRUE(model_with("auto") == rays);
+  EXPECT_FALSE(model_with("depth") == rays);  // other samples, another model
+}
+
+// Six frames are enough to explain half of what the mean colours of the same frames leave: from
+// 3.9 dB (one term) to 6.6 (sparse) were measured, half is 3.
+TEST(Replay, EveryConstructionLayoutAndBasisExplainsHalfOfWhatTheMeanLeaves) {
   const TemporaryFolder folder;
   const std::vector<std::vector<std::string>> choices{
       {"--fitter", "adaptive"},
@@ -133,7 +226,9 @@ TEST(Replay, EveryConstructionLayoutAndBasisGivesAFiniteModelThatCanBeDrawn) {
       {"--terms", "6", "--layout", "jittered-disk"},
       {"--terms", "auto"},
       {"--faithful"},
-      {"--representation", "mean"}};
+      {"--representation", "sparse"},
+      {"--representation", "sh"},
+      {"--representation", "nearest-views"}};
   for (const auto& choice : choices) {
     std::vector<std::string> arguments{"replay",     sample_session(),
                                        "-o",         folder.path() / "model.glb",
@@ -147,8 +242,19 @@ TEST(Replay, EveryConstructionLayoutAndBasisGivesAFiniteModelThatCanBeDrawn) {
     // Frames 6 and 10 are held out of 4 .. 11: index % 4 == 2.
     EXPECT_EQ(run.json()["frames"]["held_out"], 2);
     EXPECT_EQ(run.json()["frames"]["fitted"], 6);
-    EXPECT_GT(psnr(run.json()["held_out"]), 15.0) << choice.front();
+    EXPECT_GT(psnr(run.json()["held_out"]) - psnr(run.json()["held_out_mean_colour"]),
+              10 * std::log10(2.0))
+        << choice.front() << " " << choice.back();
   }
+}
+
+TEST(Replay, MeanColoursAreTheirOwnBaseline) {
+  const TemporaryFolder folder;
+  const ProgramRun run =
+      run_sheen({"replay", sample_session(), "-o", folder / "model.glb", "--start", "4", "--end",
+                 "12", "--hold-out", "4", "--representation", "mean", "--json", "--quiet"});
+  ASSERT_EQ(run.exit_code, 0) << run.standard_error;
+  EXPECT_EQ(run.json()["held_out"], run.json()["held_out_mean_colour"]);
 }
 
 TEST(RealRecordings, DragonIsPosedFromItsTags) {
@@ -182,11 +288,11 @@ void expect_held_out_above_mean(const std::string& name, double margin_db) {
 }
 
 TEST(RealRecordings, BoxIsPredictedBetterThanByMeanColours) {
-  expect_held_out_above_mean("box", 0.5);
+  expect_held_out_above_mean("box", 1.0);  // 2.1 were measured
 }
 
-TEST(RealRecordings, StoneIsPredictedNoWorseThanByMeanColours) {
-  expect_held_out_above_mean("stone", 0.0);
+TEST(RealRecordings, StoneIsPredictedBetterThanByMeanColours) {
+  expect_held_out_above_mean("stone", 1.0);  // 2.3 were measured
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace sheen::capture::test {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
+using tests::TemporaryFolder;
 
 std::vector<Bytes> images(int count) {
   std::vector<Bytes> result;
@@ -48,7 +49,7 @@ INSTANTIATE_TEST_SUITE_P(Bytes, AviOfSegments,
                          testing::Values(AviWriter::kSegmentBytes, std::uint64_t{6000}));
 
 TEST_P(AviOfSegments, ComesBackBitForBit) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto path = scratch.path() / "v.avi";
   const auto expected = images(40);
   AviWriter writer(path, kRecordedSize, 30, GetParam());
@@ -65,7 +66,7 @@ TEST_P(AviOfSegments, ComesBackBitForBit) {
 }
 
 TEST_P(AviOfSegments, IsReadByFfmpeg) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto path = scratch.path() / "v.avi";
   AviWriter writer(path, kRecordedSize, 25, GetParam());
   for (const Bytes& image : images(40)) ASSERT_EQ(writer.append(image), 0);
@@ -83,7 +84,7 @@ TEST_P(AviOfSegments, IsReadByFfmpeg) {
 }
 
 TEST(Avi, OfFfmpegIsReadAsFfmpegReadsIt) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto path = scratch.path() / "v.avi";
   {
     cv::VideoWriter writer(path.string(), cv::CAP_FFMPEG,
@@ -110,7 +111,7 @@ TEST(Avi, OfFfmpegIsReadAsFfmpegReadsIt) {
 }
 
 TEST(Avi, CutAnywhereGivesTheImagesBeforeTheCut) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto path = scratch.path() / "v.avi";
   const auto expected = images(20);
   AviWriter writer(path, kRecordedSize, 30);
@@ -144,7 +145,7 @@ TEST(Avi, CutAnywhereGivesTheImagesBeforeTheCut) {
 }
 
 TEST(Avi, SurvivesAnyBytes) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto path = scratch.path() / "v.avi";
   {
     AviWriter writer(path, kRecordedSize, 30, 6000);
@@ -169,14 +170,14 @@ TEST(Avi, SurvivesAnyBytes) {
 }
 
 TEST(Avi, IsNotWrittenOverAnother) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto path = scratch.write("v.avi", "precious");
   expect_bad_input([&] { AviWriter(path, kRecordedSize, 30); }, "v.avi", "cannot be made");
   EXPECT_EQ(file_bytes(path).size(), 8U);
 }
 
 TEST(MotionJpeg, LeavesDamagedImagesOut) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto path = scratch.path() / "v.avi";
   AviWriter writer(path, kRecordedSize, 30);
   for (int i = 0; i < 10; ++i) {

@@ -3,7 +3,7 @@
 #include "capture/board_print/board_pdf.h"
 #include "capture/pose/corner_refinement.h"
 #include "capture/pose/tag_detector.h"
-#include "tests/capture/scratch_folder.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
@@ -14,6 +14,8 @@
 
 namespace sheen::capture::test {
 namespace {
+
+using tests::TemporaryFolder;
 
 constexpr double kDotsPerInch = 200;
 constexpr double kPixelsPerMm = kDotsPerInch / 25.4;
@@ -63,7 +65,7 @@ class PrintedBoard : public testing::TestWithParam<BoardDesign> {};
 // make up for each other, half of that at most.
 TEST_P(PrintedBoard, ShowsEveryTagInItsPlace) {
   const BoardPlan plan = plan_board(GetParam());
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   write_board_pdf(folder.path() / "board.pdf", plan);
   write_board(folder.path() / "board.yaml", plan.board);
   const Board board = read_board(folder.path() / "board.yaml");

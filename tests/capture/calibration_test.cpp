@@ -6,7 +6,7 @@
 #include "capture/calibration/coverage_image.h"
 #include "tests/capture/expect_bad_input.h"
 #include "tests/capture/rendered_board.h"
-#include "tests/capture/scratch_folder.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
@@ -23,6 +23,8 @@
 
 namespace sheen::capture::test {
 namespace {
+
+using tests::TemporaryFolder;
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr ImageSize kSize{1280, 720};
@@ -233,7 +235,7 @@ TEST(TargetFinder, MeasuresAChessboardAndABoardAlike) {
 }
 
 TEST(CalibrationImages, TakesAFolderByNameAndRefusesMixedSizes) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto write = [&](const char* name, int width) {
     cv::imwrite((folder.path() / name).string(), cv::Mat(120, width, CV_8UC3, cv::Scalar(9, 9, 9)));
   };

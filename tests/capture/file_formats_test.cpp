@@ -4,7 +4,7 @@
 #include "capture/pose/trajectory.h"
 #include "tests/capture/expect_bad_input.h"
 #include "tests/capture/rendered_board.h"
-#include "tests/capture/scratch_folder.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -12,6 +12,8 @@
 
 namespace sheen::capture::test {
 namespace {
+
+using tests::TemporaryFolder;
 
 std::string camera_text(const std::string& K, const std::string& distortion,
                         const std::string& width = "640") {
@@ -27,7 +29,7 @@ const std::string kGoodK = "600., 0., 320., 0., 610., 240., 0., 0., 1.";
 const std::string kGoodD = "0.1, -0.2, 0.001, 0.002";
 
 TEST(CameraFile, ReadsWhatItWrote) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   for (const double k4 : {0.0, 0.3}) {  // five and eight coefficients
     auto intrinsics = make_camera(1280, 720, true).intrinsics();
     intrinsics.distortion[5] = k4;
@@ -44,7 +46,7 @@ TEST(CameraFile, ReadsWhatItWrote) {
 }
 
 TEST(CameraFile, ReadsFourCoefficients) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto camera = read_camera(scratch.write("camera.yaml", camera_text(kGoodK, kGoodD)));
   EXPECT_EQ(camera.intrinsics().focal_px, Eigen::Vector2d(600, 610));
   EXPECT_EQ(camera.intrinsics().distortion,
@@ -52,7 +54,7 @@ TEST(CameraFile, ReadsFourCoefficients) {
 }
 
 TEST(CameraFile, RefusesEachFault) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto refuse = [&](const std::string& text, const char* word) {
     const auto path = scratch.write("camera.yaml", text);
     expect_bad_input([&] { read_camera(path); }, "camera.yaml", word);
@@ -74,7 +76,7 @@ TEST(CameraFile, RefusesEachFault) {
 }
 
 TEST(BoardFile, ReadsWhatItWrote) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   Board board = make_grid_board("tag36h11", 3, 2, 0.0456, 0.0611);
   board.border_bits = 2;
   board.tags[4].board_from_tag.rotate(
@@ -93,7 +95,7 @@ TEST(BoardFile, ReadsWhatItWrote) {
 }
 
 TEST(BoardFile, ReadsSeveralBundles) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const Board board = read_board(scratch.write("board.yaml", R"(tag_family: DICT_6X6_250
 tag_bundles:
   - name: floor
@@ -110,7 +112,7 @@ tag_bundles:
 }
 
 TEST(BoardFile, LaysOutKalibrsGrid) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const Board board = read_board(scratch.write("board.yaml",
                                                "target_type: 'aprilgrid'\ntagCols: 6\ntagRows: 5\n"
                                                "tagSize: 0.08\ntagSpacing: 0.25\n"));
@@ -123,7 +125,7 @@ TEST(BoardFile, LaysOutKalibrsGrid) {
 }
 
 TEST(BoardFile, RefusesEachFault) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto refuse = [&](const std::string& text, const char* word) {
     const auto path = scratch.write("board.yaml", text);
     expect_bad_input([&] { read_board(path); }, "board.yaml", word);
@@ -168,7 +170,7 @@ Trajectory::Entry entry_at(double stamp, double x) {
 }
 
 TEST(TrajectoryFile, ReadsWhatItWrote) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const std::vector<Trajectory::Entry> entries{entry_at(0, 0.25), entry_at(0.04, 1.5),
                                                entry_at(12345.0625, 3)};
   write_trajectory(scratch.path() / "poses.txt", entries);
@@ -182,7 +184,7 @@ TEST(TrajectoryFile, ReadsWhatItWrote) {
 }
 
 TEST(TrajectoryFile, TakesIntegersAsIndicesAndElseSeconds) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const Trajectory indices = read_trajectory(
       scratch.write("a.txt", "# comment\n\n4 1 0 0 0 0 0 1\r\n  2\t2 0 0 0 0 0 1\n"));
   EXPECT_EQ(indices.board_from_camera({{}, 99, 4}, 10)->translation().x(), 1);
@@ -199,7 +201,7 @@ TEST(TrajectoryFile, TakesIntegersAsIndicesAndElseSeconds) {
 }
 
 TEST(TrajectoryFile, RefusesEachFault) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto refuse = [&](const std::string& text, const char* word) {
     const auto path = scratch.write("poses.txt", text);
     expect_bad_input([&] { read_trajectory(path); }, "poses.txt", word);

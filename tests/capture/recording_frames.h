@@ -5,7 +5,7 @@
 #include "capture/pose/board.h"
 #include "capture/session/session_recorder.h"
 #include "tests/capture/rendered_board.h"
-#include "tests/capture/scratch_folder.h"
+#include "tests/support/temporary_folder.h"
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -42,7 +42,7 @@ inline LiveImage live_image(int index, std::size_t bytes = 0) {
 }
 
 /// What a recording needs besides images.
-inline SessionSetup recording_setup(const ScratchFolder& scratch) {
+inline SessionSetup recording_setup(const tests::TemporaryFolder& scratch) {
   write_board(scratch.path() / "the_board.yaml", make_grid_board("tag36h11", 2, 2, 0.04, 0.05));
   scratch.write("the_mesh.ply", "ply\n");
   return {make_camera(kRecordedSize.width_px, kRecordedSize.height_px, false),

@@ -12,7 +12,7 @@
 #include "capture/synthetic/synthetic_session.h"
 #include "core/mesh/read_mesh.h"
 #include "tests/capture/expect_bad_input.h"
-#include "tests/capture/scratch_folder.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
@@ -23,6 +23,8 @@
 
 namespace sheen::capture::test {
 namespace {
+
+using tests::TemporaryFolder;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -142,7 +144,7 @@ TEST(Registration, FindsTheKnotFromTenMillimetresAndFiveDegrees) {
 }
 
 TEST(Registration, FindsAMeshOfOnesOwnFromTenMillimetresAndFiveDegrees) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   core::write_ply(folder.path() / "ball.ply", bumpy_ball());
   synthetic::SyntheticOptions options;
   options.scene = synthetic::SceneKind::mixed;
@@ -238,7 +240,7 @@ TEST(Placement, PairsGiveTheMotionBack) {
 }
 
 TEST(Placement, RefusesPairsThatSayTooLittle) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   const auto two = folder.write("two.txt", "0 0 0 0 0 0\n1 0 0 1 0 0 # a comment\n");
   expect_bad_input([&] { read_point_pairs(two); }, "two.txt", "fewer than 3");
   const auto word = folder.write("word.txt", "0 0 0 0 0 zero\n");

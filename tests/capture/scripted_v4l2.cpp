@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "scripted_v4l2.h"
+#include "tests/capture/scripted_v4l2.h"
 
 #include <algorithm>
 #include <cerrno>

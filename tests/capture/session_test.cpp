@@ -5,7 +5,7 @@
 #include "capture/pose/board.h"
 #include "tests/capture/expect_bad_input.h"
 #include "tests/capture/rendered_board.h"
-#include "tests/capture/scratch_folder.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -17,6 +17,7 @@ namespace sheen::capture::test {
 namespace {
 
 using nlohmann::json;
+using tests::TemporaryFolder;
 
 constexpr int kWidth = 64;
 constexpr int kHeight = 48;
@@ -78,7 +79,7 @@ class SessionFiles {
   json document;
 
  private:
-  ScratchFolder scratch_;
+  TemporaryFolder scratch_;
 };
 
 std::vector<int> read_all(FrameSource& source) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "capture/source/v4l2_camera.h"
 
-#include "scripted_v4l2.h"
+#include "tests/capture/scripted_v4l2.h"
 
 #include <gtest/gtest.h>
 #include <linux/videodev2.h>

@@ -5,8 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <numeric>
 #include <stdexcept>
 #include <thread>
@@ -77,21 +81,58 @@ TEST(ParallelFor, ServesSeveralCallersAtOnce) {
   EXPECT_EQ(wrong, std::vector<std::size_t>(4, 0));
 }
 
+/// Where threads meet: nobody goes on until all are there.
+class Meeting {
+ public:
+  explicit Meeting(int members) : missing_(members) {}
+
+  /// Waits for the others; false when they do not come, which a test must not wait for endlessly.
+  bool attend() {
+    constexpr std::chrono::minutes patience(2);
+    std::unique_lock lock(mutex_);
+    if (--missing_ == 0) complete_.notify_all();
+    return complete_.wait_for(lock, patience, [this] { return missing_ == 0; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable complete_;
+  int missing_;
+};
+
+/// One range for each of `threads` threads, under way at the same time: whoever took two of them
+/// would wait for itself. Returns whether all met.
+bool ranges_meet(int threads, const std::function<void()>& on_thread) {
+  Meeting meeting(threads);
+  std::atomic<int> met = 0;
+  parallel_for(
+      static_cast<std::size_t>(threads), threads,
+      [&](std::size_t begin, std::size_t end) {
+        on_thread();
+        if (end - begin == 1 && meeting.attend()) ++met;
+      },
+      1);
+  return met == threads;
+}
+
+TEST(ParallelFor, WorksOnAsManyThreadsAsItIsGiven) {
+  for (int threads = 2; threads <= 8; ++threads)
+    EXPECT_TRUE(ranges_meet(threads, [] {})) << threads;
+}
+
 std::atomic<int> threads_met = 0;
 struct CountsItsThread {
   CountsItsThread() { ++threads_met; }
 };
 
 TEST(ParallelFor, KeepsItsThreads) {
-  // An object of every thread that ever takes part: the caller and at most the seven workers that
-  // the largest call of this program (eight threads) has started.
-  for (int repeat = 0; repeat < 500; ++repeat) {
-    parallel_for(4096, 8, [](std::size_t, std::size_t) {
-      [[maybe_unused]] thread_local const CountsItsThread counted;
-    });
+  // An object of every thread that ever takes part. Every call has eight at once: the caller and
+  // the same seven workers each time, since no call of this program asks for more.
+  for (int repeat = 0; repeat < 100; ++repeat) {
+    ASSERT_TRUE(
+        ranges_meet(8, [] { [[maybe_unused]] thread_local const CountsItsThread counted; }));
   }
-  EXPECT_GE(threads_met, 1);
-  EXPECT_LE(threads_met, 8);
+  EXPECT_EQ(threads_met, 8);
 }
 
 TEST(BoundedQueue, KeepsOrderAndLosesNothing) {

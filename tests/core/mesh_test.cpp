@@ -3,7 +3,7 @@
 #include "core/mesh/neighbours.h"
 #include "core/mesh/read_mesh.h"
 #include "tests/core/shapes.h"
-#include "tests/core/temp_folder.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -16,9 +16,9 @@
 namespace sheen::core {
 namespace {
 
-using testing::read_bytes;
-using testing::TempFolder;
-using testing::write_bytes;
+using tests::read_file;
+using tests::TemporaryFolder;
+using tests::write_file;
 
 /// Side 2 around the origin, corner i at the signs of its bits, faces as outward quads.
 constexpr int kCubeFaces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
@@ -118,8 +118,8 @@ std::string refusal(const std::filesystem::path& path) {
 }
 
 TEST(ReadMesh, AngleWeightsMakeCubeNormalsDiagonal) {
-  const TempFolder folder;
-  const Mesh mesh = read_mesh(write_bytes(folder / "cube.ply", cube_ply(false)));
+  const TemporaryFolder folder;
+  const Mesh mesh = read_mesh(write_file(folder / "cube.ply", cube_ply(false)));
   ASSERT_EQ(mesh.positions.size(), 8u);
   ASSERT_EQ(mesh.triangles.size(), 12u);
   // Three right angles meet at every corner however the squares are cut: normal = corner / sqrt 3.
@@ -131,8 +131,8 @@ TEST(ReadMesh, AngleWeightsMakeCubeNormalsDiagonal) {
 }
 
 TEST(ReadMesh, TurnsAClosedSurfaceThatIsInsideOut) {
-  const TempFolder folder;
-  const Mesh mesh = read_mesh(write_bytes(folder / "cube.ply", cube_ply(true)));
+  const TemporaryFolder folder;
+  const Mesh mesh = read_mesh(write_file(folder / "cube.ply", cube_ply(true)));
   for (int i = 0; i < 8; ++i) {
     EXPECT_LT((mesh.normals[static_cast<std::size_t>(i)] - cube_corner(i).normalized()).norm(),
               1e-6f);
@@ -140,7 +140,7 @@ TEST(ReadMesh, TurnsAClosedSurfaceThatIsInsideOut) {
 }
 
 TEST(ReadMesh, PlyKeepsHardEdges) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const Mesh cube = hard_cube();
   write_ply(folder / "cube.ply", cube);
   const Mesh mesh = read_mesh(folder / "cube.ply");
@@ -150,7 +150,7 @@ TEST(ReadMesh, PlyKeepsHardEdges) {
 }
 
 TEST(ReadMesh, InsideOutHardCubeIsTurnedWithItsNormals) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const Mesh cube = hard_cube();
   Mesh wrong = cube;
   for (auto& triangle : wrong.triangles) std::swap(triangle[1], triangle[2]);
@@ -162,7 +162,7 @@ TEST(ReadMesh, InsideOutHardCubeIsTurnedWithItsNormals) {
 }
 
 TEST(ReadMesh, PlyRoundTripIsExact) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const Mesh sphere = testing::sphere(12, 17);
   write_ply(folder / "sphere.ply", sphere);
   const Mesh mesh = read_mesh(folder / "sphere.ply");
@@ -175,7 +175,7 @@ TEST(ReadMesh, PlyRoundTripIsExact) {
 }
 
 TEST(ReadMesh, ReadsBigEndianDoublesAndForeignProperties) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   std::string bytes =
       "ply\r\nformat binary_big_endian 1.0\r\nelement camera 1\r\nproperty list uint8 short "
       "view\r\nelement vertex 3\r\nproperty uchar red\r\nproperty double x\r\nproperty double "
@@ -198,7 +198,7 @@ TEST(ReadMesh, ReadsBigEndianDoublesAndForeignProperties) {
   append_big(std::uint16_t{9});
   append_big(std::uint32_t{3});
   for (int index = 2; index >= 0; --index) append_big(static_cast<std::uint16_t>(index));
-  const Mesh mesh = read_mesh(write_bytes(folder / "big.ply", bytes));
+  const Mesh mesh = read_mesh(write_file(folder / "big.ply", bytes));
   ASSERT_EQ(mesh.positions.size(), 3u);
   EXPECT_EQ(mesh.positions[2], Eigen::Vector3f(0, -2.25f, 0.5f));
   ASSERT_EQ(mesh.triangles.size(), 1u);
@@ -207,14 +207,14 @@ TEST(ReadMesh, ReadsBigEndianDoublesAndForeignProperties) {
 }
 
 TEST(ReadMesh, RepairsNormalsAndKeepsUnusedVertices) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const std::string bytes =
       "ply\nformat ascii 1.0\nelement vertex 5\nproperty float x\nproperty float y\nproperty float "
       "z\nproperty float nx\nproperty float ny\nproperty float nz\nelement face 3\nproperty list "
       "uchar int vertex_indices\nend_header\n"
       "0 0 0 0 0 0\n1 0 0 nan 0 1\n0 1 0 0 3 4\n7 7 7 0 0 0\n2 0 0 inf 0 0\n"
       "3 0 1 2\n3 0 1 1\n3 0 1 4\n";
-  const Mesh mesh = read_mesh(write_bytes(folder / "odd.ply", bytes));
+  const Mesh mesh = read_mesh(write_file(folder / "odd.ply", bytes));
   ASSERT_EQ(mesh.positions.size(), 5u);
   // The second triangle repeats a corner, the third has three corners in line.
   EXPECT_EQ(mesh.triangles.size(), 1u);
@@ -226,12 +226,12 @@ TEST(ReadMesh, RepairsNormalsAndKeepsUnusedVertices) {
 }
 
 TEST(ReadMesh, GlbKeepsVerticesAndAppliesTransforms) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   // Vertex 1 is used by nothing, vertices 0 and 4 share a position.
   const std::vector<Eigen::Vector3f> positions = {{0, 0, 0}, {9, 9, 9}, {1, 0, 0},
                                                   {0, 1, 0}, {0, 0, 0}, {-1, 0, 0}};
   const std::vector<std::uint32_t> indices = {0, 2, 3, 4, 3, 5};
-  const auto path = write_bytes(
+  const auto path = write_file(
       folder / "part.glb", glb(positions, indices, R"(,"translation":[1,2,3],"scale":[2,1,1])"));
   const Mesh mesh = read_mesh(path);
   ASSERT_EQ(mesh.positions.size(), positions.size());
@@ -245,21 +245,21 @@ TEST(ReadMesh, GlbKeepsVerticesAndAppliesTransforms) {
 }
 
 TEST(ReadMesh, MirroringNodeTurnsTheWinding) {
-  const TempFolder folder;
-  const auto path = write_bytes(folder / "mirror.glb", glb({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
-                                                           {0, 1, 2}, R"(,"scale":[-1,1,1])"));
+  const TemporaryFolder folder;
+  const auto path = write_file(folder / "mirror.glb", glb({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+                                                          {0, 1, 2}, R"(,"scale":[-1,1,1])"));
   // Mirroring x keeps the side z+ outside; the turned winding says the same.
   EXPECT_EQ(read_mesh(path).normals[0], Eigen::Vector3f(0, 0, 1));
 }
 
 TEST(ReadMesh, ObjJoinsCornersWhateverTheirTexture) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   // A quad of two triangles, every corner with a texture coordinate of its own, in two groups; one
   // vertex is unused.
-  const auto path = write_bytes(folder / "quad.obj",
-                                "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\nvt 0 0\nvt 1 0\nvt 1 "
-                                "1\nvt 0.5 0.5\nvt 0.1 0.2\nvt "
-                                "0.3 0.3\ng a\nf 1/1 2/2 3/3\ng b\nf 1/4 3/5 4/6\n");
+  const auto path = write_file(folder / "quad.obj",
+                               "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 5 5\nvt 0 0\nvt 1 0\nvt 1 "
+                               "1\nvt 0.5 0.5\nvt 0.1 0.2\nvt "
+                               "0.3 0.3\ng a\nf 1/1 2/2 3/3\ng b\nf 1/4 3/5 4/6\n");
   const Mesh mesh = read_mesh(path);
   EXPECT_EQ(mesh.positions.size(), 4u);
   EXPECT_EQ(mesh.triangles.size(), 2u);
@@ -267,19 +267,19 @@ TEST(ReadMesh, ObjJoinsCornersWhateverTheirTexture) {
 }
 
 TEST(ReadMesh, ObjNormalsMakeHardEdges) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   // Two triangles fold along an edge whose two corners have a normal on either side.
-  const auto path = write_bytes(folder / "fold.obj",
-                                "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 1\nvn 0 0 -1\nvn -1 0 0\n"
-                                "f 1//1 2//1 3//1\nf 1//2 4//2 2//2\n");
+  const auto path = write_file(folder / "fold.obj",
+                               "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 1\nvn 0 0 -1\nvn -1 0 0\n"
+                               "f 1//1 2//1 3//1\nf 1//2 4//2 2//2\n");
   EXPECT_EQ(read_mesh(path).positions.size(), 6u);
 }
 
 TEST(ReadMesh, SaysWhatIsWrong) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const std::string corners = "0 0 0\n1 0 0\n0 1 0\n";
   const auto fault_of = [&folder](const std::string& name, const std::string& bytes) {
-    return refusal(write_bytes(folder / name, bytes));
+    return refusal(write_file(folder / name, bytes));
   };
   EXPECT_NE(refusal(folder / "none.ply").find("does not exist"), std::string::npos);
   EXPECT_NE(refusal(folder.path()).find("not a mesh format"), std::string::npos);
@@ -312,24 +312,24 @@ TEST(ReadMesh, SaysWhatIsWrong) {
 }
 
 TEST(ReadMesh, RefusesEveryFileCutShort) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   write_ply(folder / "whole.ply", hard_cube());
-  const std::string ply = read_bytes(folder / "whole.ply");
+  const std::string ply = read_file(folder / "whole.ply");
   // A new name every time: file systems flush a file that is cut and written again.
   for (std::size_t size = 1; size < ply.size(); ++size) {
-    refusal(write_bytes(folder / (std::to_string(size) + ".ply"), ply.substr(0, size)));
+    refusal(write_file(folder / (std::to_string(size) + ".ply"), ply.substr(0, size)));
   }
   const std::string binary = glb({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}, "");
-  ASSERT_EQ(read_mesh(write_bytes(folder / "whole.glb", binary)).triangles.size(), 1u);
+  ASSERT_EQ(read_mesh(write_file(folder / "whole.glb", binary)).triangles.size(), 1u);
   for (std::size_t size = 1; size < binary.size(); ++size) {
-    refusal(write_bytes(folder / (std::to_string(size) + ".glb"), binary.substr(0, size)));
+    refusal(write_file(folder / (std::to_string(size) + ".glb"), binary.substr(0, size)));
   }
 }
 
 TEST(ReadMesh, RefusesGlbNodesThatAreNoTrees) {
-  const TempFolder folder;
+  const TemporaryFolder folder;
   const auto with_nodes = [&](const std::string& name, const std::string& nodes) {
-    return write_bytes(folder / name, glb({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}, nodes));
+    return write_file(folder / name, glb({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0, 1, 2}, nodes));
   };
   // Node 0 carries the mesh; the nodes appended are its parents.
   const auto chain = [](int parents) {
@@ -348,10 +348,10 @@ TEST(ReadMesh, RefusesGlbNodesThatAreNoTrees) {
 }
 
 TEST(WritePly, LeavesTheOldFileWhenTheFolderIsNotWritable) {
-  const TempFolder folder;
-  write_bytes(folder / "file", "old");
+  const TemporaryFolder folder;
+  write_file(folder / "file", "old");
   EXPECT_THROW(write_ply(folder / "file" / "mesh.ply", hard_cube()), Error);
-  EXPECT_EQ(read_bytes(folder / "file"), "old");
+  EXPECT_EQ(read_file(folder / "file"), "old");
 }
 
 TEST(VertexNeighbours, AreTheEdgesOfTheTriangles) {

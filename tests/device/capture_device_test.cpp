@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "capture/source/avi_reader.h"
-#include "loopback_player.h"
-#include "rig.h"
 #include "tests/app/program.h"
+#include "tests/device/loopback_player.h"
+#include "tests/device/rig.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "rig.h"
+#include "tests/device/rig.h"
 
 #include <chrono>
 #include <string>

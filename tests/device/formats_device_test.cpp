@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "capture/source/v4l2_listing.h"
-#include "loopback_player.h"
-#include "rig.h"
+#include "tests/device/loopback_player.h"
+#include "tests/device/rig.h"
 
 #include <algorithm>
 #include <chrono>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "loopback_player.h"
+#include "tests/device/loopback_player.h"
 
 #include "capture/source/avi_reader.h"
 #include "capture/source/v4l2_device.h"

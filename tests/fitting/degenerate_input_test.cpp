@@ -29,7 +29,7 @@ struct Range {
   double lowest = 1e9, highest = -1e9;
 };
 
-Range range_of_model(const LightField& light_field) {
+Range range_of_model(const PatchLightField& light_field) {
   Range range;
   for (const auto& x : testing::disc_grid(40, 80)) {
     const WeightedColour sum = light_field.evaluate(0, x);
@@ -119,7 +119,7 @@ TEST(DegenerateInput, SamplesThatAreNotNumbersAreLeftOut) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
   for (const char* name : {"iwls", "mean"}) {
-    const auto fitter = make_fitter(name, testing::isolated(2), {});
+    const auto fitter = make_isolated_patches(name, 2);
     core::SampleBatch batch = testing::one_sample(0, {0.1, 0.2}, {0.4, 0.5, 0.6});
     testing::add_sample(batch, 1, {0.1, 0.2}, {0.4, 0.5, 0.6});
     for (auto* column : {&batch.u, &batch.v, &batch.r, &batch.g, &batch.b}) {

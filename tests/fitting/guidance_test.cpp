@@ -16,8 +16,8 @@ namespace {
 
 constexpr DirectionCells kAll = ~DirectionCells{0};
 
-std::unique_ptr<Fitter> make(const std::string& name, std::size_t patches) {
-  return make_fitter(name, testing::isolated(patches), {.iwls = {}, .threads = 1});
+std::unique_ptr<PatchFitter> make(const std::string& name, std::size_t patches) {
+  return make_isolated_patches(name, patches);
 }
 
 // All patches seen from one direction in one colour.
@@ -182,7 +182,7 @@ class Gate : public ::testing::Test {
   }
 
   std::mt19937 random_{7};
-  std::unique_ptr<Fitter> model_ = make("mean", kPatches);
+  std::unique_ptr<PatchFitter> model_ = make("mean", kPatches);
   CaptureScore score_{kPatches};
 };
 

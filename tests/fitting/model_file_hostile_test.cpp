@@ -14,20 +14,20 @@ namespace sheen::fitting {
 namespace {
 
 using nlohmann::json;
-using testing::file_bytes;
-using testing::put_bytes;
+using tests::read_file;
+using tests::write_file;
 
 class HostileModelFile : public ::testing::Test {
  protected:
   HostileModelFile() {
     const core::Mesh mesh = testing::octahedron();
-    write_model(folder_ / "good.glb", mesh, testing::fitted("iwls", mesh, {})->light_field());
-    good_ = file_bytes(folder_ / "good.glb");
+    write_model(folder_ / "good.glb", mesh, testing::fitted("iwls", mesh)->light_field());
+    good_ = read_file(folder_ / "good.glb");
   }
 
   // Whether the bytes are refused as bad input with one line that names the file.
   bool refused(const std::string& bytes) {
-    put_bytes(folder_ / "bad.glb", bytes);
+    write_file(folder_ / "bad.glb", bytes);
     try {
       read_model(folder_ / "bad.glb");
       return false;
@@ -53,7 +53,7 @@ class HostileModelFile : public ::testing::Test {
     return file;
   }
 
-  testing::TemporaryFolder folder_;
+  tests::TemporaryFolder folder_;
   std::string good_;
   std::string message_;
 };

@@ -14,21 +14,22 @@
 namespace sheen::fitting {
 namespace {
 
-using testing::file_bytes;
 using testing::fitted;
 using testing::octahedron;
+using tests::read_file;
 
 template <typename T>
 bool same_bits(std::span<const T> a, std::span<const T> b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size_bytes()) == 0;
 }
 
-void expect_same_model(const Model& model, const core::Mesh& mesh, const LightField& light_field) {
+void expect_same_model(const Model& model, const core::Mesh& mesh,
+                       const PatchLightField& light_field) {
   EXPECT_TRUE(same_bits<Eigen::Vector3f>(model.mesh.positions, mesh.positions));
   EXPECT_TRUE(same_bits<Eigen::Vector3f>(model.mesh.normals, mesh.normals));
   EXPECT_EQ(model.mesh.triangles, mesh.triangles);
   EXPECT_EQ(model.light_field->representation(), light_field.representation());
-  EXPECT_EQ(model.light_field->observed(), light_field.observed());
+  EXPECT_EQ(as_patches(*model.light_field)->observed(), light_field.observed());
   if (const auto* expected = dynamic_cast<const iwls::LightFieldModel*>(&light_field)) {
     const auto& read = dynamic_cast<const iwls::LightFieldModel&>(*model.light_field);
     EXPECT_TRUE(same_bits(read.coefficients(), expected->coefficients()));
@@ -43,15 +44,15 @@ void expect_same_model(const Model& model, const core::Mesh& mesh, const LightFi
   }
 }
 
-void expect_round_trip(const std::string& name, const iwls::Options& options) {
-  const testing::TemporaryFolder folder;
+void expect_round_trip(const std::string& name, const OptionValues& options) {
+  const tests::TemporaryFolder folder;
   const core::Mesh mesh = octahedron();
   const auto fitter = fitted(name, mesh, options);
   write_model(folder / "a.glb", mesh, fitter->light_field());
   const Model model = read_model(folder / "a.glb");
   expect_same_model(model, mesh, fitter->light_field());
   write_model(folder / "b.glb", model.mesh, *model.light_field);
-  EXPECT_TRUE(file_bytes(folder / "a.glb") == file_bytes(folder / "b.glb"));
+  EXPECT_TRUE(read_file(folder / "a.glb") == read_file(folder / "b.glb"));
 }
 
 TEST(ModelFile, ReadsBackBitByBit) {
@@ -59,17 +60,17 @@ TEST(ModelFile, ReadsBackBitByBit) {
   for (const int terms : {0, 1, 3, 6}) {
     testing::for_all_options(terms, false, [](const iwls::Options& options) {
       if (options.construction != iwls::Construction::quadtree) return;
-      expect_round_trip("iwls", options);
+      expect_round_trip("iwls", testing::values_of(options));
     });
   }
 }
 
 // Half floats: 2 bytes per coefficient, and little more than that per patch.
 TEST(ModelFile, StoresSixteenBitsPerCoefficient) {
-  const testing::TemporaryFolder folder;
+  const tests::TemporaryFolder folder;
   core::Mesh mesh = octahedron();
   const auto size_with = [&](int terms) {
-    const auto fitter = fitted("iwls", mesh, {{}, {}, 64, terms, false});
+    const auto fitter = fitted("iwls", mesh, {{"centers", "64"}, {"terms", std::to_string(terms)}});
     write_model(folder / "m.glb", mesh, fitter->light_field());
     return std::filesystem::file_size(folder / "m.glb");
   };
@@ -81,11 +82,11 @@ TEST(ModelFile, StoresSixteenBitsPerCoefficient) {
 // Mid grey .5 in sRGB is ((.5 + .055) / 1.055)^2.4 = .21404 of 65535 = 14027 in linear vertex
 // colours.
 TEST(ModelFile, VertexColoursAreLinear) {
-  const testing::TemporaryFolder folder;
+  const tests::TemporaryFolder folder;
   const core::Mesh mesh = octahedron();
-  const auto untouched = make_fitter("mean", core::vertex_neighbours(mesh), {});
+  const auto untouched = make_fitter("mean", mesh);
   write_model(folder / "grey.glb", mesh, untouched->light_field());
-  const std::string file = file_bytes(folder / "grey.glb");
+  const std::string file = read_file(folder / "grey.glb");
   const Glb glb = parse_glb(file);
   const auto& accessor =
       glb.document["accessors"][glb.document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"]
@@ -97,12 +98,12 @@ TEST(ModelFile, VertexColoursAreLinear) {
 }
 
 TEST(ModelFile, AFailingWriteLeavesTheOldFile) {
-  const testing::TemporaryFolder folder;
-  testing::put_bytes(folder / "plain", "not a folder");
+  const tests::TemporaryFolder folder;
+  tests::write_file(folder / "plain", "not a folder");
   const core::Mesh mesh = octahedron();
   const auto fitter = fitted("mean", mesh);
   EXPECT_THROW(write_model((folder / "plain") / "m.glb", mesh, fitter->light_field()), core::Error);
-  EXPECT_EQ(file_bytes(folder / "plain"), "not a folder");
+  EXPECT_EQ(read_file(folder / "plain"), "not a folder");
 }
 
 }  // namespace

@@ -1,40 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "core/mesh/neighbours.h"
 #include "fitting/model_file/model_file.h"
 #include "tests/fitting/samples_for_tests.h"
-
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
-#include <sstream>
+#include "tests/support/temporary_folder.h"
 
 namespace sheen::fitting::testing {
-
-/// A folder that goes with the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::temp_directory_path() /
-            ("sheen_" + std::string(test->name()) + "_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(path_);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] std::filesystem::path operator/(const char* name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// An octahedron: 6 vertices, 8 triangles.
 inline core::Mesh octahedron() {
@@ -60,9 +31,9 @@ inline core::Mesh octahedron() {
 }
 
 /// A fitted light field on the mesh; its last patch was never seen.
-inline std::unique_ptr<Fitter> fitted(const std::string& name, const core::Mesh& mesh,
-                                      const iwls::Options& options = {}) {
-  auto fitter = make_fitter(name, core::vertex_neighbours(mesh), {options, 1});
+inline std::unique_ptr<PatchFitter> fitted(const std::string& name, const core::Mesh& mesh,
+                                           const OptionValues& values = {}) {
+  auto fitter = make_patches(name, mesh, values);
   for (const auto& x : scattered(30, 71)) {
     core::SampleBatch batch;
     for (std::uint32_t patch = 0; patch + 1 < mesh.positions.size(); ++patch) {
@@ -74,18 +45,11 @@ inline std::unique_ptr<Fitter> fitted(const std::string& name, const core::Mesh&
   return fitter;
 }
 
-inline std::string file_bytes(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  return bytes.str();
-}
-
-inline void put_bytes(const std::filesystem::path& path, const std::string& bytes) {
-  // Overwriting in place makes some file systems flush every time.
-  std::filesystem::remove(path);
-  std::ofstream(path, std::ios::binary)
-      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+/// A mesh of so many vertices that has no triangles.
+inline core::Mesh points(std::size_t count) {
+  return {std::vector<Eigen::Vector3f>(count, Eigen::Vector3f::Zero()),
+          std::vector<Eigen::Vector3f>(count, Eigen::Vector3f::UnitZ()),
+          {}};
 }
 
 }  // namespace sheen::fitting::testing

@@ -3,6 +3,7 @@
 #include "core/geometry/disc_map.h"
 #include "fitting/nearest_views/light_field_model.h"
 #include "fitting/nearest_views/model_codec.h"
+#include "fitting/nearest_views/nearest_fitter.h"
 #include "tests/fitting/models_for_tests.h"
 
 #include <Eigen/Geometry>
@@ -25,8 +26,8 @@ using fitting::testing::teach;
 
 constexpr unsigned kSeed = 1618;
 
-std::unique_ptr<Fitter> make(std::size_t patches = 1) {
-  return make_fitter("nearest-views", isolated(patches), {});
+std::unique_ptr<PatchFitter> make(std::size_t patches = 1) {
+  return make_nearest_fitter(isolated(patches), 1);
 }
 
 Eigen::Vector3d wavy(double u, double v) {
@@ -122,12 +123,11 @@ TEST(NearestViews, DegenerateSamplesAreFinite) {
 // No sample: mid grey with hardly any weight. After `finish` the neighbours' mean, and the first
 // sample replaces that.
 TEST(NearestViews, UnseenPatches) {
-  const auto fitted =
-      make_fitter("nearest-views", core::VertexNeighbours{{0, 1, 2}, {1, 0}}, FitOptions{});
+  const auto fitted = make_nearest_fitter({{0, 1, 2}, {1, 0}}, 1);
   EXPECT_EQ(fitted->light_field().evaluate(1, {0, 0}).weight_sum, kUnseenWeight);
   EXPECT_EQ(colour_of(fitted->light_field(), 1, {0, 0}), Eigen::Vector3f::Constant(0.5f));
   fitted->integrate(one_sample(0, {0.1, 0.2}, {0.25, 0.5, 0.75}));
-  EXPECT_EQ(fitted->finish().patches, std::vector<std::uint32_t>{1});
+  EXPECT_EQ(fitted->finish().elements, std::vector<std::uint32_t>{1});
   EXPECT_EQ(colour_of(fitted->light_field(), 1, {0.7f, 0}), Eigen::Vector3f(0.25f, 0.5f, 0.75f));
   fitted->integrate(one_sample(1, {-0.5, 0}, {1, 1, 1}));
   EXPECT_EQ(colour_of(fitted->light_field(), 1, {0.7f, 0}), Eigen::Vector3f(1, 1, 1));
@@ -136,16 +136,16 @@ TEST(NearestViews, UnseenPatches) {
 }
 
 TEST(NearestViewsFile, ReadsBackBitByBit) {
-  const fitting::testing::TemporaryFolder folder;
+  const tests::TemporaryFolder folder;
   const core::Mesh mesh = fitting::testing::octahedron();
   const auto fitted = fitting::testing::fitted("nearest-views", mesh);
   write_model(folder / "a.glb", mesh, fitted->light_field());
   const Model read = read_model(folder / "a.glb");
-  EXPECT_EQ(read.light_field->observed(), fitted->light_field().observed());
+  EXPECT_EQ(dynamic_cast<const LightFieldModel&>(*read.light_field).observed(),
+            fitted->light_field().observed());
   EXPECT_EQ(read.light_field->coefficient_count(), fitted->light_field().coefficient_count());
   write_model(folder / "b.glb", read.mesh, *read.light_field);
-  EXPECT_TRUE(fitting::testing::file_bytes(folder / "a.glb") ==
-              fitting::testing::file_bytes(folder / "b.glb"));
+  EXPECT_TRUE(tests::read_file(folder / "a.glb") == tests::read_file(folder / "b.glb"));
 }
 
 TEST(NearestViewsFile, BrokenPartsAreRefused) {
@@ -154,18 +154,18 @@ TEST(NearestViewsFile, BrokenPartsAreRefused) {
   model.add(0, {0.2f, 0.2f}, {0.3f, 0.4f, 0.5f});
   model.add(1, {0.3f, 0.2f}, {0.3f, 0.4f, 0.5f});
   const ModelPart good = encode_model(model);
-  const std::vector<std::uint8_t> observed = model.observed();
-  EXPECT_NO_THROW(decode_model(good, observed));
+  const core::Mesh mesh = fitting::testing::points(3);
+  EXPECT_NO_THROW(decode_model(good, mesh));
   // Wrong lengths.
   for (const char* name : {"counts", "samples"}) {
     for (std::size_t length = 0; length < good.arrays.at(name).size(); ++length) {
       ModelPart bad = good;
       bad.arrays[name] = good.arrays.at(name).first(length);
-      EXPECT_THROW(decode_model(bad, observed), ModelFault) << name << length;
+      EXPECT_THROW(decode_model(bad, mesh), ModelFault) << name << length;
     }
     ModelPart absent = good;
     absent.arrays.erase(name);
-    EXPECT_THROW(decode_model(absent, observed), ModelFault);
+    EXPECT_THROW(decode_model(absent, mesh), ModelFault);
   }
   // Counts 2, 1, 0: every other count asks for another length or another flag.
   std::array<std::uint32_t, 3> counts{2, 1, 0};
@@ -174,17 +174,17 @@ TEST(NearestViewsFile, BrokenPartsAreRefused) {
       counts[i] ^= 1u << bit;
       ModelPart bad = good;
       bad.arrays["counts"] = std::as_bytes(std::span(counts));
-      EXPECT_THROW(decode_model(bad, observed), ModelFault) << i << " " << bit;
+      EXPECT_THROW(decode_model(bad, mesh), ModelFault) << i << " " << bit;
       counts[i] ^= 1u << bit;
     }
   }
   counts = {1, 1, 1};
   ModelPart bad = good;
   bad.arrays["counts"] = std::as_bytes(std::span(counts));
-  EXPECT_NO_THROW(decode_model(bad, observed));
-  EXPECT_THROW(decode_model(bad, {1, 1, 1, 1}), ModelFault);
+  EXPECT_NO_THROW(decode_model(bad, mesh));
+  EXPECT_THROW(decode_model(bad, fitting::testing::points(4)), ModelFault);
   counts = {3, 0, 0};
-  EXPECT_THROW(decode_model(bad, observed), ModelFault);
+  EXPECT_THROW(decode_model(bad, mesh), ModelFault);
   // A direction off the disc, a number that is none.
   for (const std::uint16_t bits : std::array<std::uint16_t, 3>{0x4000, 0x7e00, 0xfc00}) {
     std::vector<std::uint16_t> numbers(15);
@@ -192,7 +192,7 @@ TEST(NearestViewsFile, BrokenPartsAreRefused) {
     numbers[5] = bits;
     ModelPart changed = good;
     changed.arrays["samples"] = std::as_bytes(std::span(numbers));
-    EXPECT_THROW(decode_model(changed, observed), ModelFault) << bits;
+    EXPECT_THROW(decode_model(changed, mesh), ModelFault) << bits;
   }
 }
 

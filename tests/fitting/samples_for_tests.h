@@ -3,11 +3,14 @@
 
 #include "core/mesh/neighbours.h"
 #include "core/samples/sample_batch.h"
+#include "fitting/descriptor.h"
+#include "fitting/iwls/iwls_fitter.h"
 #include "fitting/iwls/light_field_model.h"
-#include "fitting/model_file/model_codec.h"
-#include "fitting/registry.h"
+#include "fitting/model_file/model_part.h"
+#include "fitting/patch_fitter.h"
 
 #include <Eigen/Core>
+#include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
@@ -70,13 +73,44 @@ inline core::SampleBatch one_sample(std::uint32_t patch, const Eigen::Vector2d& 
   return batch;
 }
 
-inline std::unique_ptr<Fitter> make_iwls(const iwls::Options& options, std::size_t patches = 1,
-                                         int threads = 1) {
-  return make_fitter("iwls", isolated(patches), {options, threads});
+/// Every representation by name, in the registry's order.
+inline std::vector<std::string> representation_names() {
+  std::vector<std::string> names;
+  for (const Descriptor* descriptor : representations()) names.emplace_back(descriptor->name);
+  return names;
+}
+
+/// A representation of patches over a mesh; neighbours as the mesh has them.
+inline std::unique_ptr<PatchFitter> make_patches(const std::string& name, const core::Mesh& mesh,
+                                                 const OptionValues& values = {}) {
+  auto fitter = make_fitter(name, mesh, values);
+  auto& patches = dynamic_cast<PatchFitter&>(*fitter);
+  static_cast<void>(fitter.release());
+  return std::unique_ptr<PatchFitter>(&patches);
+}
+
+inline std::unique_ptr<PatchFitter> make_iwls(const iwls::Options& options, std::size_t patches = 1,
+                                              int threads = 1) {
+  return iwls::make_iwls_fitter(isolated(patches), options, threads);
+}
+
+/// The options as whoever knows only names would give them.
+inline OptionValues values_of(iwls::Options options) {
+  OptionValues values;
+  for (const FitOption& option : option_table(options)) values[option.name] = option.get();
+  return values;
+}
+
+/// A view of which only the samples are known; `batch` must outlive it.
+inline core::Observation observation_of(const core::SampleBatch& batch) {
+  static const cv::Mat no_image;
+  static const core::CameraModel no_camera;
+  static const core::VertexView no_view;
+  return {0, no_image, no_camera, Eigen::Isometry3d::Identity(), no_view, batch};
 }
 
 /// Feeds patch 0 one view per direction, then finishes.
-inline void teach(Fitter& fitter, const std::vector<Eigen::Vector2d>& directions,
+inline void teach(PatchFitter& fitter, const std::vector<Eigen::Vector2d>& directions,
                   const Lumisphere& truth) {
   for (const Eigen::Vector2d& x : directions) {
     fitter.integrate(one_sample(0, x, truth(x.x(), x.y())));
@@ -84,14 +118,14 @@ inline void teach(Fitter& fitter, const std::vector<Eigen::Vector2d>& directions
   fitter.finish();
 }
 
-inline Eigen::Vector3f colour_of(const LightField& light_field, std::size_t patch,
+inline Eigen::Vector3f colour_of(const PatchLightField& light_field, std::size_t patch,
                                  const Eigen::Vector2f& uv) {
   const WeightedColour sum = light_field.evaluate(patch, uv);
   return sum.colour_sum / sum.weight_sum;
 }
 
 /// Largest difference to the truth over the closed disc.
-inline double worst_error(const LightField& light_field, const Lumisphere& truth) {
+inline double worst_error(const PatchLightField& light_field, const Lumisphere& truth) {
   double worst = 0;
   for (const Eigen::Vector2f& x : disc_grid()) {
     const Eigen::Vector3d value = colour_of(light_field, 0, x).cast<double>();
@@ -121,18 +155,18 @@ inline core::SampleBatch random_view(std::size_t patches, std::mt19937& random) 
   return batch;
 }
 
-/// Every bit of a model, as it lies in the model file.
+inline std::string text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Every bit of a model, as it lies in the model file: the arrays, then the observed flags. Two
+/// models of which nothing is encoded must not pass for the same, so that fails the test.
 inline std::string bytes_of(const LightField& light_field) {
+  const ModelPart part = representation_named(light_field.representation()).encode(light_field);
   std::string all;
-  for (const ModelCodec& codec : model_codecs()) {
-    if (codec.representation != light_field.representation()) continue;
-    const ModelPart part = codec.encode(light_field);
-    for (const auto& [name, bytes] : part.arrays) {
-      all.append(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    }
-  }
-  all.append(light_field.observed().begin(), light_field.observed().end());
-  return all;
+  for (const auto& [name, bytes] : part.arrays) all += text_of(bytes);
+  EXPECT_FALSE(all.empty()) << light_field.representation() << " encodes nothing";
+  return all + text_of(part.observed);
 }
 
 /// Options as a message for failing assertions.

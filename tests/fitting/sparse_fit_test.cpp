@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "fitting/registry.h"
 #include "fitting/sparse/light_field_model.h"
 #include "fitting/sparse/robust_weights.h"
 #include "fitting/sparse/selection.h"
+#include "fitting/sparse/sparse_fitter.h"
 #include "tests/fitting/samples_for_tests.h"
 
 #include <gtest/gtest.h>
@@ -26,12 +26,9 @@ using testing::one_sample;
 using testing::scattered;
 using testing::teach;
 
-std::unique_ptr<Fitter> make_sparse(std::size_t patches = 1, int threads = 1,
-                                    const Options& options = {}) {
-  FitOptions all;
-  all.sparse = options;
-  all.threads = threads;
-  return make_fitter("sparse", isolated(patches), all);
+std::unique_ptr<PatchFitter> make_sparse(std::size_t patches = 1, int threads = 1,
+                                         const Options& options = {}) {
+  return make_sparse_fitter(isolated(patches), options, threads);
 }
 
 PatchModel patch_of(const Fitter& fitter, std::size_t patch_idx = 0) {
@@ -108,7 +105,7 @@ TEST(SparseFit, HighlightIsBetterThanOneColour) {
   for (unsigned seed = 4; seed < 14; ++seed) {
     const auto fitter = make_sparse();
     teach(*fitter, scattered(96, seed), highlight);
-    const LightField& fitted = fitter->light_field();
+    const PatchLightField& fitted = fitter->light_field();
     const Eigen::Vector3d mean = fitted.mean_colour(0).cast<double>();
     for (const Eigen::Vector2f& x : disc_grid()) {
       const Eigen::Vector3d truth =
@@ -148,7 +145,7 @@ TEST(SparseFit, ThreadsDoNotMatter) {
                                    x.x() * std::sin(patch) + x.y() * std::cos(patch));
       add_sample(batch, patch, turned, highlight(turned.x(), turned.y()));
     }
-    EXPECT_EQ(one->integrate(batch).patches, three->integrate(batch).patches);
+    EXPECT_EQ(one->integrate(batch).elements, three->integrate(batch).elements);
   }
   one->finish();
   three->finish();

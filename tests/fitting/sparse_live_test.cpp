@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What the sparse fitter does while views arrive, before `finish`.
-#include "fitting/registry.h"
+#include "fitting/sparse/sparse_fitter.h"
 #include "tests/fitting/samples_for_tests.h"
 
 #include <gtest/gtest.h>
@@ -18,10 +18,8 @@ using testing::isolated;
 using testing::one_sample;
 using testing::scattered;
 
-std::unique_ptr<Fitter> make_sparse(std::size_t patches, const Options& options = {}) {
-  FitOptions all;
-  all.sparse = options;
-  return make_fitter("sparse", isolated(patches), all);
+std::unique_ptr<PatchFitter> make_sparse(std::size_t patches, const Options& options = {}) {
+  return make_sparse_fitter(isolated(patches), options, 1);
 }
 
 Eigen::Vector3d highlight(double u, double v) {

@@ -20,6 +20,7 @@ namespace {
 
 using fitting::testing::random_patch;
 using fitting::testing::random_sparse;
+using fitting::testing::text_of;
 
 constexpr unsigned kSeed = 4711;
 
@@ -198,10 +199,6 @@ TEST(SparseModel, CountsEveryStoredNumber) {
   EXPECT_EQ(model.coefficient_count(), 3u + 12u + 8u);
 }
 
-std::string bytes_of(std::span<const std::byte> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 TEST(SparseModel, PatchesMayBeWrittenByThreads) {
   constexpr std::size_t patches = 4000;
   LightFieldModel together(patches);
@@ -228,7 +225,7 @@ TEST(SparseModel, PatchesMayBeWrittenByThreads) {
   const ModelPart a = encode_model(together);
   const ModelPart b = encode_model(alone);
   for (const auto& [name, bytes] : a.arrays) {
-    EXPECT_TRUE(bytes_of(bytes) == bytes_of(b.arrays.at(name))) << name;
+    EXPECT_TRUE(text_of(bytes) == text_of(b.arrays.at(name))) << name;
   }
 }
 
@@ -240,10 +237,12 @@ std::optional<std::string> decoded(const std::map<std::string, std::string>& arr
                                    const nlohmann::json& parameters, std::size_t patches) {
   ModelPart part;
   part.parameters = parameters;
+  const std::vector<std::uint8_t> observed(patches, 1);
+  part.observed = std::as_bytes(std::span(observed));
   for (const auto& [name, bytes] : arrays) part.arrays[name] = std::as_bytes(std::span(bytes));
   std::unique_ptr<const LightField> model;
   try {
-    model = decode_model(part, std::vector<std::uint8_t>(patches, 1));
+    model = decode_model(part, fitting::testing::points(patches));
   } catch (const ModelFault& fault) {
     EXPECT_GT(std::string(fault.what()).size(), 10u);
     return std::nullopt;
@@ -251,8 +250,8 @@ std::optional<std::string> decoded(const std::map<std::string, std::string>& arr
   const ModelPart again = encode_model(*model);
   std::string all;
   for (const auto& [name, bytes] : again.arrays) {
-    EXPECT_EQ(bytes_of(bytes), arrays.at(name)) << name;
-    all += bytes_of(bytes);
+    EXPECT_EQ(text_of(bytes), arrays.at(name)) << name;
+    all += text_of(bytes);
   }
   return all;
 }
@@ -262,7 +261,7 @@ class SparseCodec : public ::testing::Test {
   SparseCodec() : model_(random_sparse(kPatches, 6, 0, kSeed)) {
     const ModelPart part = encode_model(model_);
     parameters_ = part.parameters;
-    for (const auto& [name, bytes] : part.arrays) arrays_[name] = bytes_of(bytes);
+    for (const auto& [name, bytes] : part.arrays) arrays_[name] = text_of(bytes);
   }
 
   static constexpr std::size_t kPatches = 30;
@@ -364,32 +363,31 @@ TEST_F(SparseCodec, ForeignDictionariesAreRefused) {
 // The whole file, with patches of one colour only (no RBF anywhere) and without.
 TEST(SparseModelFile, ReadsBackBitByBit) {
   for (const std::size_t most_rbfs : {std::size_t{0}, kMaxRbfs}) {
-    const fitting::testing::TemporaryFolder folder;
+    const tests::TemporaryFolder folder;
     const core::Mesh mesh = fitting::testing::octahedron();
     const LightFieldModel model = random_sparse(mesh.positions.size(), most_rbfs, 3, kSeed);
     write_model(folder / "a.glb", mesh, model);
     const Model read = read_model(folder / "a.glb");
     EXPECT_EQ(read.light_field->representation(), "sparse");
-    EXPECT_EQ(read.light_field->observed(), model.observed());
     const auto& copy = dynamic_cast<const LightFieldModel&>(*read.light_field);
+    EXPECT_EQ(copy.observed(), model.observed());
     for (std::size_t i = 0; i < model.patch_count(); ++i) {
       EXPECT_TRUE(same(copy.patch(i), model.patch(i))) << i;
     }
     write_model(folder / "b.glb", read.mesh, *read.light_field);
-    EXPECT_TRUE(fitting::testing::file_bytes(folder / "a.glb") ==
-                fitting::testing::file_bytes(folder / "b.glb"));
+    EXPECT_TRUE(tests::read_file(folder / "a.glb") == tests::read_file(folder / "b.glb"));
   }
 }
 
 TEST(SparseModelFile, EveryFlippedByteIsRefused) {
-  const fitting::testing::TemporaryFolder folder;
+  const tests::TemporaryFolder folder;
   const core::Mesh mesh = fitting::testing::octahedron();
   write_model(folder / "a.glb", mesh, random_sparse(mesh.positions.size(), 5, 3, kSeed));
-  const std::string good = fitting::testing::file_bytes(folder / "a.glb");
+  const std::string good = tests::read_file(folder / "a.glb");
   for (std::size_t at = 0; at < good.size(); at += 5) {
     std::string bytes = good;
     bytes[at] = static_cast<char>(bytes[at] ^ 0x10);
-    fitting::testing::put_bytes(folder / "bad.glb", bytes);
+    tests::write_file(folder / "bad.glb", bytes);
     EXPECT_THROW(read_model(folder / "bad.glb"), core::Error) << at;
   }
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "core/diagnostics/error.h"
 #include "fitting/spherical_harmonics/basis.h"
+#include "fitting/spherical_harmonics/harmonics_fitter.h"
 #include "fitting/spherical_harmonics/light_field_model.h"
 #include "fitting/spherical_harmonics/model_codec.h"
 #include "tests/fitting/models_for_tests.h"
@@ -23,10 +23,8 @@ using fitting::testing::worst_error;
 constexpr unsigned kSeed = 2718;
 constexpr double kPi = 3.14159265358979323846;
 
-std::unique_ptr<Fitter> make(const Options& options) {
-  FitOptions all;
-  all.spherical_harmonics = options;
-  return make_fitter("sh", isolated(1), all);
+std::unique_ptr<PatchFitter> make(const Options& options) {
+  return make_harmonics_fitter(isolated(1), options, 1);
 }
 
 double z_of(double u, double v) {
@@ -231,7 +229,7 @@ TEST(SphericalHarmonics, RefusesOptionsOutOfRange) {
 }
 
 TEST(SphericalHarmonicsFile, ReadsBackBitByBit) {
-  const fitting::testing::TemporaryFolder folder;
+  const tests::TemporaryFolder folder;
   const core::Mesh mesh = fitting::testing::octahedron();
   for (int degree = 1; degree <= kMaxDegree; ++degree) {
     LightFieldModel model(degree, mesh.positions.size());
@@ -257,23 +255,23 @@ TEST(SphericalHarmonicsFile, ReadsBackBitByBit) {
 TEST(SphericalHarmonicsFile, BrokenPartsAreRefused) {
   const LightFieldModel model(2, 3);
   const ModelPart good = encode_model(model);
-  const std::vector<std::uint8_t> observed(3, 1);
-  EXPECT_NO_THROW(decode_model(good, observed));
+  const core::Mesh mesh = fitting::testing::points(3);
+  EXPECT_NO_THROW(decode_model(good, mesh));
   for (const nlohmann::json& degree :
        {nlohmann::json(0), nlohmann::json(1), nlohmann::json(3), nlohmann::json(4),
         nlohmann::json(-1), nlohmann::json(2.5), nlohmann::json("2"), nlohmann::json(1e18)}) {
     ModelPart bad = good;
     bad.parameters["degree"] = degree;
-    EXPECT_THROW(decode_model(bad, observed), ModelFault) << degree;
+    EXPECT_THROW(decode_model(bad, mesh), ModelFault) << degree;
   }
   // 3 patches x 9 terms x 3 channels x 2 bytes: any other length is wrong.
   for (std::size_t length = 0; length < 162; ++length) {
     ModelPart bad = good;
     bad.arrays["coefficients"] = good.arrays.at("coefficients").first(length);
-    EXPECT_THROW(decode_model(bad, observed), ModelFault) << length;
+    EXPECT_THROW(decode_model(bad, mesh), ModelFault) << length;
   }
-  EXPECT_THROW(decode_model(good, std::vector<std::uint8_t>(4, 1)), ModelFault);
-  EXPECT_THROW(decode_model({}, observed), ModelFault);
+  EXPECT_THROW(decode_model(good, fitting::testing::points(4)), ModelFault);
+  EXPECT_THROW(decode_model({}, mesh), ModelFault);
 }
 
 }  // namespace

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "fitting/model_file/model_codec.h"
 #include "fitting/undo/undoable_fitter.h"
 #include "tests/fitting/samples_for_tests.h"
 
@@ -12,9 +11,7 @@ constexpr std::size_t kPatches = 300;
 
 class Undo : public ::testing::TestWithParam<std::string> {
  protected:
-  static std::unique_ptr<Fitter> make() {
-    return make_fitter(GetParam(), testing::isolated(kPatches), {.iwls = {}, .threads = 1});
-  }
+  static std::unique_ptr<PatchFitter> make() { return make_isolated_patches(GetParam(), kPatches); }
 };
 
 TEST_P(Undo, ModelEqualsOneThatNeverSawTheUndoneViews) {
@@ -25,12 +22,12 @@ TEST_P(Undo, ModelEqualsOneThatNeverSawTheUndoneViews) {
   // One sees 20 views, takes 8 back and sees 10 more; the other sees 12 and the same 10.
   UndoableFitter undone(make);
   const auto never_saw = make();
-  for (int i = 0; i < 20; ++i) undone.integrate(views[i]);
+  for (int i = 0; i < 20; ++i) undone.integrate(testing::observation_of(views[i]));
   undone.undo(8, [](const core::SampleBatch&, const LightField&) {});
   for (int i = 0; i < 12; ++i) never_saw->integrate(views[i]);
   EXPECT_EQ(testing::bytes_of(undone.light_field()), testing::bytes_of(never_saw->light_field()));
   for (int i = 20; i < 30; ++i) {
-    undone.integrate(views[i]);
+    undone.integrate(testing::observation_of(views[i]));
     never_saw->integrate(views[i]);
   }
   EXPECT_EQ(testing::bytes_of(undone.light_field()), testing::bytes_of(never_saw->light_field()));
@@ -44,14 +41,17 @@ TEST_P(Undo, TakingEverythingBackLeavesAnEmptyModel) {
   std::mt19937 random(4);
   UndoableFitter fitter(make);
   const std::string empty = testing::bytes_of(fitter.light_field());
-  for (int i = 0; i < 3; ++i) fitter.integrate(testing::random_view(kPatches, random));
+  for (int i = 0; i < 3; ++i) {
+    fitter.integrate(testing::observation_of(testing::random_view(kPatches, random)));
+  }
   EXPECT_NE(testing::bytes_of(fitter.light_field()), empty);
   fitter.undo(100, [](const core::SampleBatch&, const LightField&) {});
   EXPECT_EQ(testing::bytes_of(fitter.light_field()), empty);
   EXPECT_EQ(fitter.statistics().samples, 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryRepresentation, Undo, ::testing::ValuesIn(representation_names()),
+INSTANTIATE_TEST_SUITE_P(EveryRepresentation, Undo,
+                         ::testing::ValuesIn(testing::representation_names()),
                          [](const auto& each) {
                            std::string name = each.param;
                            std::erase(name, '-');

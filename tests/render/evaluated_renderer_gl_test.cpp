@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
+#include <array>
 #include <cmath>
 #include <iostream>
 
@@ -13,7 +14,7 @@ namespace sheen::render {
 namespace {
 
 /// A look that no shader knows: stripes in direction space, their level differing by patch.
-class StripedLightField final : public fitting::LightField {
+class StripedLightField final : public fitting::PatchLightField {
  public:
   /// Every `unseen_every`-th patch is unobserved (0: none).
   StripedLightField(std::size_t patch_count, std::size_t unseen_every) : observed_(patch_count, 1) {
@@ -86,7 +87,7 @@ TEST(EvaluatedRenderer, ShowsChangesAfterUpload) {
   const cv::Mat before = renderer->render(camera, pose).image;
   light_field.phase = 0.6f;
   EXPECT_EQ(cv::norm(renderer->render(camera, pose).image, before, cv::NORM_INF), 0);
-  renderer->upload({{0}});
+  renderer->upload(std::array<std::uint32_t, 1>{0});
   const cv::Mat after = renderer->render(camera, pose).image;
   // Red rises by 0.4 of 255 everywhere.
   EXPECT_GT(cv::norm(after, before, cv::NORM_INF), 100);

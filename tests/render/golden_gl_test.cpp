@@ -45,7 +45,7 @@ void expect_golden(const RenderedView& view, const std::string& name, double mea
                 << std::filesystem::current_path();
 }
 
-RenderedView draw(const core::Mesh& mesh, const fitting::LightField& light_field,
+RenderedView draw(const core::Mesh& mesh, const fitting::PatchLightField& light_field,
                   const core::CameraModel& camera, const Eigen::Isometry3d& pose) {
   const auto context = make_osmesa_context();
   return make_gl_surface_renderer(*context, mesh, light_field)->render(camera, pose);

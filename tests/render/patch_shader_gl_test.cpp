@@ -19,7 +19,7 @@ namespace {
 using fitting::iwls::Layout;
 
 /// A representation nobody draws.
-class UnknownLightField final : public fitting::LightField {
+class UnknownLightField final : public fitting::PatchLightField {
  public:
   [[nodiscard]] std::string_view representation() const override { return "unknown"; }
   [[nodiscard]] std::size_t patch_count() const override { return 1; }
@@ -109,16 +109,16 @@ TEST(PatchShader, PartialUploadEqualsFullUpload) {
   const cv::Mat before = renderer->render(camera, pose).image;
 
   // Change every seventh patch and its successor, colour and flag.
-  fitting::ModelUpdate update;
+  std::vector<std::uint32_t> written;
   for (std::uint32_t patch = 0; patch + 1 < mesh.positions.size(); patch += 7) {
     for (const std::uint32_t changed : {patch, patch + 1}) {
       model.store_constant(changed, {0.9f, 0.1f, 0.5f});
       model.store_observed(changed, changed % 2 == 0);
-      update.patches.push_back(changed);
+      written.push_back(changed);
     }
   }
   EXPECT_EQ(cv::norm(renderer->render(camera, pose).image, before, cv::NORM_INF), 0);
-  renderer->upload(update);
+  renderer->upload(written);
   const cv::Mat partial = renderer->render(camera, pose).image;
   const cv::Mat full = make_gl_surface_renderer(*context, mesh, model)->render(camera, pose).image;
   EXPECT_EQ(cv::norm(partial, full, cv::NORM_INF), 0);

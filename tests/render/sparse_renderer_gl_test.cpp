@@ -83,13 +83,13 @@ TEST(SparsePatchShader, GrowingEqualsStartingAfresh) {
   std::mt19937 random(kSeed);
   for (const std::size_t most_rbfs : {std::size_t{0}, std::size_t{3}, std::size_t{20}}) {
     // Change every third patch; the others keep what they have.
-    fitting::ModelUpdate update;
+    std::vector<std::uint32_t> written;
     for (std::uint32_t i = 0; i < model.patch_count(); i += 3) {
       model.store(i, random_patch(random, most_rbfs));
       model.store_observed(i, i % 2 == 0);
-      update.patches.push_back(i);
+      written.push_back(i);
     }
-    renderer->upload(update);
+    renderer->upload(written);
     const cv::Mat grown = renderer->render(camera, pose).image;
     const cv::Mat fresh =
         make_gl_surface_renderer(*context, mesh, model)->render(camera, pose).image;

@@ -24,7 +24,7 @@ struct Pair {
   RenderedView cpu;
 };
 
-Pair render_both(const core::Mesh& mesh, const fitting::LightField& light_field,
+Pair render_both(const core::Mesh& mesh, const fitting::PatchLightField& light_field,
                  const core::CameraModel& camera, const Eigen::Isometry3d& pose) {
   const auto context = make_osmesa_context();
   const auto gpu = make_gl_surface_renderer(*context, mesh, light_field);

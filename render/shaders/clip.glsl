@@ -1,26 +1,4 @@
 // SPDX-License-Identifier: MIT
-// The camera of core/geometry/camera.h. Filled by render/surface/view_block.h.
-layout(std140, binding = 0) uniform View {
-  mat4 camera_from_object;
-  vec4 pinhole;       // focal length x, y; principal point x, y (pixels)
-  vec4 low_order;     // k1 k2 p1 p2
-  vec4 high_order;    // k3 k4 k5 k6
-  vec4 eye_and_near;  // eye in the object frame (metres); depth of the near plane (metres)
-  vec4 image;       // width, height (pixels); valid radius, longest segment (in the plane z = 1)
-};
-
-vec2 distort(vec2 ideal) {
-  float x = ideal.x;
-  float y = ideal.y;
-  float r2 = dot(ideal, ideal);
-  float radial = (1.0 + r2 * (low_order.x + r2 * (low_order.y + r2 * high_order.x))) /
-                 (1.0 + r2 * (high_order.y + r2 * (high_order.z + r2 * high_order.w)));
-  float p1 = low_order.z;
-  float p2 = low_order.w;
-  return vec2(x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
-              y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y);
-}
-
 // Camera frame -> clip space whose w is the depth, so that attributes stay perspective-correct
 // although the lens has moved the vertex. Depth values are near / depth: 1 at the near plane, 0 at
 // infinity (reversed, clip control zero to one), which keeps full relative precision everywhere.
