@@ -26,6 +26,7 @@ struct ReconstructionInputs {
   /// Frames of the session; null: its own, as options.frames says.
   std::unique_ptr<capture::FrameSource> frames = nullptr;
   VisibilityFactory make_visibility = {};
+  bool is_growing = false;  ///< the session is being recorded: it cannot be read ahead
 };
 
 /// Whoever watches frames being fitted, on the thread that fits.
@@ -42,8 +43,8 @@ class FrameListener {
 /// somebody may look at the model while it grows.
 class Reconstruction {
  public:
-  /// Opens all that may be wrong: mesh, poses, settings. Reads part of the recording where texel
-  /// patches or a refined board ask for it. Throws core::Error, or std::invalid_argument for
+  /// Opens all that may be wrong: mesh, poses, settings. Reads part of the recording where texels
+  /// or a refined board ask for it. Throws core::Error, or std::invalid_argument for
   /// settings that the representation refuses.
   Reconstruction(ReconstructionInputs inputs, const ReconstructionOptions& options,
                  ProgressSink& sink);

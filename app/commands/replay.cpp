@@ -196,7 +196,8 @@ FitOutcome fit_session(const ReplayOptions& options, const capture::Session& ses
   TerminalSink sink(context);
   Reconstruction fitted({.session = session,
                          .frames = std::move(frames),
-                         .make_visibility = visibility_factory(options.visibility)},
+                         .make_visibility = visibility_factory(options.visibility),
+                         .is_growing = camera != nullptr},
                         completed(options, context), sink);
   const auto live = make_live_session(options, fitted, camera != nullptr);
   FitOutcome outcome;

@@ -13,7 +13,7 @@ namespace sheen::capture {
 class RiffBytes {
  public:
   void text(std::string_view four_letters) {
-    bytes_.insert(bytes_.end(), four_letters.begin(), four_letters.end());
+    for (const char letter : four_letters) bytes_.push_back(static_cast<std::uint8_t>(letter));
   }
   void u16(std::uint32_t value) { put(value, 2); }
   void u32(std::uint32_t value) { put(value, 4); }

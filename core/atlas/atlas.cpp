@@ -33,16 +33,14 @@ Atlas pack_charts(std::span<const Chart> charts, std::size_t triangle_count) {
 
   // Corners where their charts now lie.
   Atlas atlas;
-  atlas.width = packing.size.x();
-  atlas.height = packing.size.y();
-  atlas.chart_of.resize(triangle_count);
+  atlas.width = std::max(1, packing.size.x());
+  atlas.height = std::max(1, packing.size.y());
   atlas.corners.resize(triangle_count);
   for (std::size_t c = 0; c < charts.size(); ++c) {
     atlas.charts.push_back({packing.origins[c], sizes[c]});
     const Eigen::Vector2f origin = (packing.origins[c].array() + kGutterTexels).cast<float>();
     for (std::size_t i = 0; i < charts[c].triangles.size(); ++i) {
       const std::uint32_t triangle = charts[c].triangles[i];
-      atlas.chart_of[triangle] = static_cast<std::uint32_t>(c);
       for (std::size_t corner = 0; corner < 3; ++corner) {
         atlas.corners[triangle][corner] =
             point_at(charts[c].corners[i][corner] + origin, atlas.width, atlas.height);
@@ -53,7 +51,7 @@ Atlas pack_charts(std::span<const Chart> charts, std::size_t triangle_count) {
 }
 
 Atlas make_atlas(const Mesh& mesh, float texel_m, std::size_t most_texels) {
-  assert(!mesh.triangles.empty() && texel_m > 0 && most_texels > 0);
+  assert(texel_m > 0 && most_texels > 0);
   // The surface alone must not be too much.
   double surface_m2 = 0;
   for (const float area_m2 : triangle_shapes(mesh).area_m2) {

@@ -19,6 +19,8 @@ namespace sheen::core {
 inline constexpr int kGutterTexels = 2;
 /// Largest side of an atlas, texels: what every OpenGL 4.5 driver holds.
 inline constexpr int kMostAtlasSide = 16384;
+/// Most texels that an atlas may have.
+inline constexpr int kMostAtlasTexels = 1 << 26;
 
 /// A place on an atlas: parts of 65535 of its width and height, from the upper left corner of its
 /// first texel. As glTF's normalised unsigned shorts.
@@ -34,10 +36,9 @@ struct Atlas {
     Eigen::Vector2i origin, size;  ///< texels, gutter included
   };
 
-  int width = 0, height = 0;                        ///< texels
-  std::vector<Rectangle> charts;                    ///< disjoint
-  std::vector<std::uint32_t> chart_of;              ///< for every triangle of the mesh
-  std::vector<std::array<AtlasPoint, 3>> corners;   ///< of every triangle
+  int width = 1, height = 1;                       ///< texels, >= 1
+  std::vector<Rectangle> charts;                   ///< disjoint; unknown (none) of one from a file
+  std::vector<std::array<AtlasPoint, 3>> corners;  ///< of every triangle of the mesh
 
   [[nodiscard]] std::size_t texel_count() const {
     return static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
@@ -54,7 +55,7 @@ struct Atlas {
 /// once.
 Atlas pack_charts(std::span<const Chart> charts, std::size_t triangle_count);
 
-/// Charts of a mesh (at least one triangle), a texel for every texel_m squared (> 0) of its surface;
+/// Charts of a mesh, a texel for every texel_m squared (> 0) of its surface;
 /// larger texels where the atlas would have more than `most_texels` or not fit kMostAtlasSide.
 Atlas make_atlas(const Mesh& mesh, float texel_m, std::size_t most_texels);
 

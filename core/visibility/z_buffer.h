@@ -25,7 +25,7 @@ class ZBuffer {
   ZBuffer(const Mesh& mesh, int threads, const RasterKernels& kernels);
 
   /// Draws the part of the image that `box` holds, of a view from `eye` (object frame, metres).
-  /// False where too many triangles are large: then nothing is promised.
+  /// False where too many triangles are large to be listed: all are drawn, with straight edges.
   bool draw(const VertexView& view, const Eigen::Vector3f& eye, const PixelBox& box);
 
   /// Drawn triangles wider or higher than kLarge_px, and all with a corner that has no pixel.

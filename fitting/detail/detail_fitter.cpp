@@ -1,191 +1,159 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/detail/detail_fitter.h"
 
-#include "core/concurrency/parallel_for.h"
+#include "core/diagnostics/error.h"
+#include "core/mesh/bounds.h"
 #include "core/mesh/neighbours.h"
-#include "core/numerics/median.h"
 #include "fitting/detail/detail_light_field.h"
-#include "fitting/detail/texture_solver.h"
 #include "fitting/detail/texel_means.h"
+#include "fitting/detail/texture_solver.h"
 #include "fitting/detail/texture_sums.h"
 #include "fitting/detail/vertex_means.h"
 #include "fitting/sparse/sparse_fitter.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
-#include <functional>
 #include <numeric>
-#include <cstdlib>
 
 namespace sheen::fitting::detail {
 namespace {
 
 constexpr std::size_t kMostTexels = std::size_t{1} << 23;
+/// Texels along the diagonal of an object of which it is not known how large it appears.
+constexpr float kTexelsAcross = 1000.0f;
 
+float texel_m(const core::Mesh& mesh, const Options& options) {
+  if (options.texel_mm) return *options.texel_mm * 1e-3f;
+  const float diagonal_m = core::bounds_of(mesh).diagonal().norm();
+  return diagonal_m > 0.0f ? diagonal_m / kTexelsAcross : 1.0f;
 }
-std::vector<core::SampleBatch>* g_log = nullptr;
-float g_texel_m = 0;
-std::function<Eigen::Vector3f(std::uint32_t t, const std::array<float, 3>&, const Eigen::Vector3f& eye)> g_pixel_offset;
-namespace {
+
+core::Atlas atlas_of(const core::Mesh& mesh, const Options& options) {
+  core::Atlas atlas = core::make_atlas(mesh, texel_m(mesh, options), kMostTexels);
+  if (atlas.texel_count() <= std::size_t{core::kMostAtlasTexels}) return atlas;
+  throw core::Error(core::Error::Kind::bad_input, "the object's mesh",
+                    "consists of too many separate pieces for a texture",
+                    "join its vertices, or use --patches vertex");
+}
+
 class DetailFitter final : public Fitter {
  public:
   DetailFitter(const core::Mesh& mesh, const Options& options, int threads)
       : mesh_(mesh),
-        options_(options),
         threads_(threads),
         patches_(sparse::make_sparse_fitter(core::vertex_neighbours(mesh), options.patches,
                                             threads)),
-        means_(mesh),
+        model_(mesh, atlas_of(mesh, options)),
         raster_(mesh, threads),
-        model_(mesh) {}
+        texel_means_(mesh, model_.texture().atlas(), threads),
+        texture_sums_(mesh, model_.texture().atlas(), threads),
+        vertex_means_(mesh) {}
 
   const ModelUpdate& integrate(const core::Observation& observation) override;
   const ModelUpdate& finish() override;
-  [[nodiscard]] const DetailLightField& light_field() const override { return model_; }
+  [[nodiscard]] const LightField& light_field() const override { return model_; }
   [[nodiscard]] FitStatistics statistics() const override { return patches_->statistics(); }
 
  private:
-  void make_texture(const core::Observation& observation);
   void store_offset(std::uint32_t patch);
-  void show(const Planes& planes);
+  [[nodiscard]] Planes starting_texture() const;
+  void store_texture(const Planes& planes);
 
   const core::Mesh& mesh_;
-  Options options_;
   int threads_;
   std::unique_ptr<sparse::SparseFitter> patches_;
-  VertexMeans means_;
-  std::optional<core::Atlas> atlas_;
-  std::unique_ptr<TextureSums> sums_;
-  std::unique_ptr<TexelMeans> live_;
-  ViewRaster raster_;
-  Planes planes_;
-  std::vector<Eigen::Vector3f> at_vertices_;
-  std::unique_ptr<sparse::SparseFitter> resid_patches_;
   DetailLightField model_;
+  ViewRaster raster_;
+  TexelMeans texel_means_;
+  TextureSums texture_sums_;
+  VertexMeans vertex_means_;
   core::SampleBatch samples_;
   ModelUpdate update_;
 };
 
-void DetailFitter::make_texture(const core::Observation& observation) {
-  std::vector<double> depths_m;
-  for (const std::uint32_t patch : observation.samples.patch) {
-    depths_m.push_back(static_cast<double>(observation.view.depth_m[patch]));
-  }
-  float texel_m = 0.001f;
-  if (!depths_m.empty()) {
-    texel_m = static_cast<float>(core::upper_median(depths_m)) /
-              static_cast<float>(observation.camera.intrinsics().focal_px.x());
-  }
-  if (const char* e = std::getenv("TEXEL")) texel_m *= static_cast<float>(std::atof(e));
-  if (options_.texel_mm) texel_m = *options_.texel_mm * 1e-3f;
-  g_texel_m = texel_m;
-  atlas_ = core::make_atlas(mesh_, texel_m, kMostTexels);
-  live_ = std::make_unique<TexelMeans>(mesh_, *atlas_, threads_);
-  model_.texture().emplace(*atlas_);
-}
-
 const ModelUpdate& DetailFitter::integrate(const core::Observation& observation) {
-  if (std::getenv("PASS1")) {
-    if (!live_->subtract) { resid_patches_ = sparse::make_sparse_fitter(core::vertex_neighbours(mesh_), options_.patches, threads_); live_->subtract = &planes_; at_vertices_.clear(); for (std::size_t v = 0; v < mesh_.positions.size(); ++v) at_vertices_.push_back(model_.mean_colour(v)); means_.subtract = &at_vertices_; }
-    raster_.set_view(observation);
-    live_->integrate(observation, raster_);
-    samples_ = observation.samples;
-    means_.average(live_->triangles(), samples_);
-    if (g_log) g_log->push_back(samples_);
-    resid_patches_->PatchFitter::integrate(samples_);
-    return update_;
-  }
-  if (std::getenv("PASS2")) {
-    static TextureSums* last = nullptr;
-    if (!last || last != sums_.get()) { sums_ = std::make_unique<TextureSums>(mesh_, *atlas_, threads_); last = sums_.get(); }
-    sums_->offset.assign(mesh_.positions.size(), Eigen::Vector3f::Zero());
-    const auto frames = core::tangent_frames(mesh_);
-    const Eigen::Vector3f eye = core::eye_in_object(observation.camera_from_object);
-    for (size_t i = 0; i < frames.size(); ++i) {
-      const auto d = core::direction_towards(frames[i], mesh_.positions[i], eye);
-      if (d.cosine <= 0) continue;
-      sums_->offset[i] = 255.0f * model_.offsets().colour(i, d.uv);
-    }
-    raster_.set_view(observation);
-    sums_->pixel_offset = g_pixel_offset;
-    sums_->eye = eye;
-    sums_->integrate(observation, raster_);
-    return update_;
-  }
-  if (!live_) make_texture(observation);
   raster_.set_view(observation);
-  live_->integrate(observation, raster_);
-  if (std::getenv("PLAINSUM")) {
-    if (!sums_) sums_ = std::make_unique<TextureSums>(mesh_, *atlas_, threads_);
-    sums_->integrate(observation, raster_);
-  }
+  texel_means_.integrate(observation, raster_, model_.texture());
+  texture_sums_.integrate(observation, raster_);
   samples_ = observation.samples;
-  if (!std::getenv("POINT")) means_.average(live_->triangles(), samples_);
-  if (g_log) g_log->push_back(samples_);
+  vertex_means_.average(texel_means_.corners(), samples_);
   update_ = patches_->PatchFitter::integrate(samples_);
   for (const std::uint32_t patch : update_.elements) store_offset(patch);
+  for (const std::uint32_t page : texel_means_.touched_pages()) {
+    update_.elements.push_back(static_cast<std::uint32_t>(model_.patch_count()) + page);
+  }
   return update_;
 }
 
+// The texture holds the mean colour: a patch keeps how its model differs from its own mean.
 void DetailFitter::store_offset(std::uint32_t patch) {
-  sparse::PatchModel model = patches_->light_field().patch(patch);
-  if (model.term_count() == 1) {
-    model.coefficient[0].setZero();
+  sparse::PatchModel offset = patches_->light_field().patch(patch);
+  if (offset.term_count() == 1) {
+    offset.coefficient[0].setZero();
   } else {
-    model.coefficient[0] -= patches_->mean_over_views(patch);
+    offset.coefficient[0] -= patches_->mean_over_views(patch);
   }
-  model_.offsets().store(patch, model);
+  model_.offsets().store(patch, offset);
   model_.offsets().store_observed(patch, patches_->light_field().observed()[patch] != 0);
 }
 
-void DetailFitter::show(const Planes& planes) {
-  const auto& means = live_->texels();
-  auto& texels = model_.texture()->texels();
-  for (std::size_t i = 0; i < texels.size(); ++i) {
-    if (means[i].weight == 0 && !(sums_ && sums_->texels()[i].weight > 0)) continue;
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      texels[i][channel] = static_cast<std::uint8_t>(
-          std::clamp(std::lround(planes[channel][i]), 0L, 255L));
-    }
-  }
+const ModelUpdate& DetailFitter::finish() {
+  patches_->finish();
+  for (std::uint32_t patch = 0; patch < model_.patch_count(); ++patch) store_offset(patch);
+  Planes planes = starting_texture();
+  solve_texture(texture_sums_.texels(), static_cast<std::size_t>(model_.texture().atlas().width),
+                threads_, planes);
+  store_texture(planes);
+  update_.elements.resize(model_.element_count());
+  std::iota(update_.elements.begin(), update_.elements.end(), 0u);
+  return update_;
 }
 
-const ModelUpdate& DetailFitter::finish() {
-  if (std::getenv("PASS1")) {
-    if (std::getenv("SKIPA")) return update_;
-    resid_patches_->finish();
-    for (std::uint32_t patch = 0; patch < mesh_.positions.size(); ++patch) {
-      sparse::PatchModel m = resid_patches_->light_field().patch(patch);
-      if (m.term_count() == 1) m.coefficient[0].setZero(); else m.coefficient[0].array() -= 0.5f;
-      model_.offsets().store(patch, m);
-      model_.offsets().store_observed(patch, resid_patches_->light_field().observed()[patch] != 0);
+/// Means: of what was seen at a texel, or only around it; where nothing was, what the patches say.
+Planes DetailFitter::starting_texture() const {
+  Planes planes = mean_texture(texture_sums_.texels());
+  std::vector<Eigen::Vector3f> at_vertices(model_.patch_count());
+  for (std::size_t patch = 0; patch < at_vertices.size(); ++patch) {
+    at_vertices[patch] = 255.0f * patches_->light_field().mean_colour(patch);
+  }
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    const auto& triangle = mesh_.triangles[t];
+    for (const SurfaceTexel& texel : texel_means_.surface().of(t)) {
+      const TexelMean& mean = texel_means_.texels()[texel.texel_idx];
+      const bool seen_around = texture_sums_.texels()[texel.texel_idx].weight > 0;
+      if (mean.weight == 0 && seen_around) continue;
+      const Eigen::Vector3f around =
+          (1.0f - texel.at_second - texel.at_third) * at_vertices[triangle[0]] +
+          texel.at_second * at_vertices[triangle[1]] + texel.at_third * at_vertices[triangle[2]];
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        planes[channel][texel.texel_idx] =
+            mean.weight > 0 ? mean.mean(channel) : around[static_cast<Eigen::Index>(channel)];
+      }
     }
-    return update_;
   }
-  if (!std::getenv("PASS2")) update_ = patches_->finish();
-  Planes planes;
-  for (std::size_t channel = 0; channel < 3; ++channel) {
-    for (const TexelMean& m : live_->texels()) planes[channel].push_back(m.weight == 0 ? 0.0f : static_cast<float>(m.colour[channel]) / (4.0f * static_cast<float>(m.weight)));
-  }
-  if (sums_ && !std::getenv("NOLSQ")) {
-    if (std::getenv("SUMMEAN")) {
-      const Planes m = mean_texture(sums_->texels());
-      for (size_t c = 0; c < 3; ++c) for (size_t i = 0; i < m[c].size(); ++i) if (sums_->texels()[i].weight > 0) planes[c][i] = m[c][i];
+  return planes;
+}
+
+/// Texels that no reading touches keep their grey.
+void DetailFitter::store_texture(const Planes& planes) {
+  std::vector<Texel>& texels = model_.texture().texels();
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    for (const SurfaceTexel& texel : texel_means_.surface().of(t)) {
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        texels[texel.texel_idx][channel] = static_cast<std::uint8_t>(
+            std::lround(std::clamp(planes[channel][texel.texel_idx], 0.0f, 255.0f)));
+      }
     }
-    solve_texture(sums_->texels(), static_cast<std::size_t>(atlas_->width), threads_, planes);
   }
-  show(planes);
-  if (!std::getenv("PASS2")) planes_ = planes; else return update_;
-  update_.elements.resize(mesh_.positions.size());
-  std::iota(update_.elements.begin(), update_.elements.end(), 0u);
-  for (const std::uint32_t patch : update_.elements) store_offset(patch);
-  return update_;
 }
 
 }  // namespace
 
 std::unique_ptr<Fitter> make_detail_fitter(const core::Mesh& mesh, const Options& options,
                                            int threads) {
+  options.check();
+  assert(threads >= 1);
   return std::make_unique<DetailFitter>(mesh, options, threads);
 }
 

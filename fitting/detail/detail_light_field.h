@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/atlas/atlas.h"
 #include "core/mesh/mesh.h"
 #include "fitting/patch_light_field.h"
 #include "fitting/sparse/light_field_model.h"
@@ -11,7 +12,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -21,39 +21,43 @@ namespace sheen::fitting::detail {
 /// patches (one per vertex), how the colour differs from it towards every direction.
 class DetailLightField final : public PatchLightField {
  public:
-  /// Grey and without a texture until there is one.
-  explicit DetailLightField(const core::Mesh& mesh);
+  /// Mid grey, and the same towards every direction. `atlas` is one of `mesh`.
+  DetailLightField(const core::Mesh& mesh, core::Atlas atlas);
+  /// Of its parts, as a file holds them.
+  DetailLightField(const core::Mesh& mesh, SurfaceTexture texture,
+                   sparse::LightFieldModel offsets);
 
   [[nodiscard]] std::string_view representation() const override { return "detail"; }
   [[nodiscard]] std::size_t patch_count() const override { return offsets_.patch_count(); }
   [[nodiscard]] WeightedColour evaluate(std::size_t patch_idx,
                                         const Eigen::Vector2f& uv) const override;
+  [[nodiscard]] WeightedColour interpolated_part(std::size_t patch_idx,
+                                                 const Eigen::Vector2f& uv) const override {
+    return offsets_.evaluate(patch_idx, uv);
+  }
   [[nodiscard]] Eigen::Vector3f mean_colour(std::size_t patch_idx) const override;
   [[nodiscard]] const std::vector<std::uint8_t>& observed() const override {
     return offsets_.observed();
   }
-  /// Three per texel, and those of the patches that are not zero.
+  /// Three per texel, and those of the patches that differ from zero.
   [[nodiscard]] std::size_t coefficient_count() const override;
   /// Patches, then pages of the texture.
-  [[nodiscard]] std::size_t element_count() const override;
+  [[nodiscard]] std::size_t element_count() const override {
+    return patch_count() + texture_.page_count();
+  }
 
+  [[nodiscard]] const SurfaceTexture* texture_between_patches() const override {
+    return &texture_;
+  }
+  [[nodiscard]] const SurfaceTexture& texture() const { return texture_; }
+  [[nodiscard]] SurfaceTexture& texture() { return texture_; }
   [[nodiscard]] const sparse::LightFieldModel& offsets() const { return offsets_; }
   [[nodiscard]] sparse::LightFieldModel& offsets() { return offsets_; }
-  [[nodiscard]] const std::optional<SurfaceTexture>& texture() const { return texture_; }
-  [[nodiscard]] std::optional<SurfaceTexture>& texture() { return texture_; }
 
  private:
-  /// A triangle that has a vertex at one of its corners.
-  struct Corner {
-    std::uint32_t triangle_idx;
-    std::uint8_t corner;
-  };
-
-  [[nodiscard]] Eigen::Vector3f texture_at(std::size_t patch_idx) const;
-
+  SurfaceTexture texture_;
   sparse::LightFieldModel offsets_;
-  std::optional<SurfaceTexture> texture_;
-  std::vector<std::optional<Corner>> corner_of_;  ///< nothing where no triangle uses the vertex
+  std::vector<Eigen::Vector2f> place_;  ///< of every vertex on the atlas, one of them
 };
 
 }  // namespace sheen::fitting::detail

@@ -9,16 +9,16 @@ namespace sheen::fitting::detail {
 void Options::check() const {
   patches.check();
   if (texel_mm && !(*texel_mm > 0.0f)) {
-    throw std::invalid_argument("texel_mm is " + std::to_string(*texel_mm) +
+    throw std::invalid_argument("texel-mm is " + std::to_string(*texel_mm) +
                                 ", it must be positive");
   }
 }
 
 OptionTable option_table(Options& options) {
   OptionTable table = sparse::option_table(options.patches);
-  table.push_back(number_option("texel-mm", options.texel_mm, 0.001, 1000,
+  table.push_back(number_option(kTexelOption, options.texel_mm, 1e-4, 1e4,
                                 "Side of a texel on the surface, mm (default: what a pixel covers "
-                                "in the first view)"));
+                                "there)"));
   return table;
 }
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "core/atlas/atlas.h"
 #include "core/mesh/mesh.h"
 #include "core/samples/observation.h"
 #include "fitting/detail/surface_texels.h"
 #include "fitting/detail/view_raster.h"
-#include "fitting/detail/texture_solver.h"
+#include "fitting/texture/surface_texture.h"
 
 #include <array>
 #include <cstddef>
@@ -19,43 +18,51 @@ namespace sheen::fitting::detail {
 /// between normal and view, because what is seen obliquely is seen unsharply. Integers, so that they
 /// do not depend on the order of the views.
 struct alignas(16) TexelMean {
-  std::uint32_t weight = 0;               ///< sum of q, in 64ths
-  std::array<std::uint32_t, 3> colour{};  ///< sum of q times the colour, RGB, in 1020ths
+  std::uint32_t weight = 0;                ///< sum of q, in 64ths
+  std::array<std::uint32_t, 3> colour{};   ///< sum of q times the colour, RGB, in 1020ths
+
+  /// The mean, 0 to 255; weight > 0.
+  [[nodiscard]] float mean(std::size_t channel) const {
+    return static_cast<float>(colour[channel]) / (4.0f * static_cast<float>(weight));
+  }
 };
 
-/// What one view shows of a triangle: the normal equations of three colours at its corners that are
-/// interpolated in between.
-struct TriangleColours {
-  float texels = 0;                         ///< seen
-  std::array<float, 6> matrix{};            ///< sums of w_i w_j: 00 11 22 01 12 20
-  std::array<std::array<float, 3>, 3> colour{};  ///< corner by corner, sum of w_i f, f in 0 to 255
+/// What one view shows around the corners of a triangle: sums over its texels, each weighted with
+/// the corner's barycentric weight w there.
+struct CornerColours {
+  std::array<float, 3> weight{};                 ///< sum of w, corner by corner
+  std::array<std::array<float, 3>, 3> colour{};  ///< sum of w times the colour, RGB, 0 to 255
 };
 
 /// The mean colour of every texel over all views so far.
 class TexelMeans {
  public:
-  /// Texels are sent to a renderer in square pages of this side.
-  static constexpr int kPage = 64;
-
-  /// `mesh` and `atlas`, one of its, outlive it.
+  /// `mesh` outlives it; `atlas` is one of its.
   TexelMeans(const core::Mesh& mesh, const core::Atlas& atlas, int threads);
 
-  /// Adds a view. The same on any number of threads.
-  void integrate(const core::Observation& observation, const ViewRaster& raster);
+  /// Adds a view, and writes the means of what it shows into `texture`. The same on any number of
+  /// threads.
+  void integrate(const core::Observation& observation, const ViewRaster& raster,
+                 SurfaceTexture& texture);
+
+  /// Pages of the texture that the last view changed, ascending.
+  [[nodiscard]] std::vector<std::uint32_t> touched_pages() const;
 
   [[nodiscard]] const std::vector<TexelMean>& texels() const { return means_; }
   [[nodiscard]] const SurfaceTexels& surface() const { return surface_; }
   /// Of the last view, one for each triangle.
-  [[nodiscard]] const std::vector<TriangleColours>& triangles() const { return triangles_; }
-
-  const Planes* subtract = nullptr;  // LAB
+  [[nodiscard]] const std::vector<CornerColours>& corners() const { return corners_; }
 
  private:
+  void integrate_triangle(std::uint32_t triangle_idx, const core::Observation& observation,
+                          const ViewRaster& raster, SurfaceTexture& texture);
+
   const core::Mesh& mesh_;
   int threads_;
   SurfaceTexels surface_;
   std::vector<TexelMean> means_;
-  std::vector<TriangleColours> triangles_;
+  std::vector<CornerColours> corners_;
+  std::vector<std::uint8_t> page_is_touched_;
 };
 
 }  // namespace sheen::fitting::detail

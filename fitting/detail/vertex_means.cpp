@@ -1,20 +1,18 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/detail/vertex_means.h"
 
+#include <array>
 #include <cstddef>
-#include <cstdlib>
 
 namespace sheen::fitting::detail {
 namespace {
 
-/// Pixels that a vertex's surroundings must cover, weighted, for their mean to be taken.
-constexpr float kFewestPixels = 1.0f;
-/// Share of the surroundings that must be seen.
-constexpr float kLeastSeen = 0.6f;
+/// Weight that the texels around a vertex must have together for their mean to be taken.
+constexpr float kLeastWeight = 1.0f;
 
 }  // namespace
 
-VertexMeans::VertexMeans(const core::Mesh& mesh) : mesh_(mesh), offsets_(mesh.positions.size() + 1, 0) {
+VertexMeans::VertexMeans(const core::Mesh& mesh) : offsets_(mesh.positions.size() + 1, 0) {
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t vertex : triangle) ++offsets_[vertex + 1];
   }
@@ -28,58 +26,23 @@ VertexMeans::VertexMeans(const core::Mesh& mesh) : mesh_(mesh), offsets_(mesh.po
   }
 }
 
-void VertexMeans::average(std::span<const TriangleColours> triangles,
-                          core::SampleBatch& samples) {
-  const int sweeps = std::getenv("FE") ? std::atoi(std::getenv("FE")) : 0;
-  const std::size_t n = mesh_.positions.size();
-  value_.assign(n, Eigen::Vector3f::Zero());
-  static std::vector<float> lumped, expected; lumped.assign(n, 0.0f); expected.assign(n, 0.0f);
-  const auto gather = [&](std::uint32_t v, bool first, const std::vector<Eigen::Vector3f>& d) {
-    Eigen::Vector3f g = Eigen::Vector3f::Zero();
-    float l = 0;
-    for (std::uint32_t c = offsets_[v]; c < offsets_[v + 1]; ++c) {
-      const TriangleColours& t = triangles[corners_[c].triangle_idx];
-      if (t.texels == 0) continue;
-      const std::uint32_t i = corners_[c].corner;
-      const std::uint32_t j = (i + 1) % 3, k = (i + 2) % 3;
-      g += Eigen::Vector3f(t.colour[i].data());
-      const float mij = t.matrix[3 + i], mik = t.matrix[3 + k];
-      l += t.matrix[i] + mij + mik;
-      if (!first) {
-        const auto& tri = mesh_.triangles[corners_[c].triangle_idx];
-        g -= t.matrix[i] * d[tri[i]] + mij * d[tri[j]] + mik * d[tri[k]];
-      }
-    }
-    if (first) lumped[v] = l;
-    return g;
-  };
-  for (std::uint32_t v = 0; v < n; ++v) { const Eigen::Vector3f g = gather(v, true, value_); if (lumped[v] > 0) value_[v] = g / lumped[v]; }
-  for (int sweep = 0; sweep < sweeps; ++sweep) {
-    next_ = value_;
-    for (std::uint32_t v = 0; v < n; ++v) if (lumped[v] > 0.5f) next_[v] += gather(v, false, value_) / lumped[v];
-    value_.swap(next_);
-  }
-  std::size_t kept = 0;
+void VertexMeans::average(std::span<const CornerColours> triangles,
+                          core::SampleBatch& samples) const {
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const std::uint32_t vertex = samples.patch[i];
-    std::array<float, 3> rgb{samples.r[i], samples.g[i], samples.b[i]};
-    float all = 0; (void)all;
-    if (lumped[vertex] >= kFewestPixels) {
-      for (std::size_t channel = 0; channel < 3; ++channel) rgb[channel] = value_[vertex][static_cast<Eigen::Index>(channel)] / 255.0f;
-    } else if (subtract) {
-      for (std::size_t channel = 0; channel < 3; ++channel) rgb[channel] += 0.5f - (*subtract)[vertex][static_cast<Eigen::Index>(channel)];
+    float weight = 0;
+    std::array<float, 3> sum{};
+    for (std::uint32_t c = offsets_[vertex]; c < offsets_[vertex + 1]; ++c) {
+      const CornerColours& triangle = triangles[corners_[c].triangle_idx];
+      weight += triangle.weight[corners_[c].corner];
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        sum[channel] += triangle.colour[corners_[c].corner][channel];
+      }
     }
-    samples.patch[kept] = vertex;
-    samples.u[kept] = samples.u[i];
-    samples.v[kept] = samples.v[i];
-    samples.r[kept] = rgb[0];
-    samples.g[kept] = rgb[1];
-    samples.b[kept] = rgb[2];
-    ++kept;
-  }
-  samples.patch.resize(kept);
-  for (auto* column : {&samples.u, &samples.v, &samples.r, &samples.g, &samples.b}) {
-    column->resize(kept);
+    if (weight < kLeastWeight) continue;
+    samples.r[i] = sum[0] / (255.0f * weight);
+    samples.g[i] = sum[1] / (255.0f * weight);
+    samples.b[i] = sum[2] / (255.0f * weight);
   }
 }
 

@@ -25,8 +25,8 @@ void ViewRaster::set_view(const core::Observation& observation) {
   if (box_.right < box_.left || box_.bottom < box_.top) return;
   // A pixel more on every side: neighbours are compared. That large triangles are drawn with
   // straight edges does not matter: the pixels are found by the same edges.
-  depth_.draw(observation.view, core::eye_in_object(observation.camera_from_object),
-              {box_.left - 1, box_.top - 1, box_.right + 1, box_.bottom + 1});
+  static_cast<void>(depth_.draw(observation.view, core::eye_in_object(observation.camera_from_object),
+              {box_.left - 1, box_.top - 1, box_.right + 1, box_.bottom + 1}));
   find_whole_pixels();
 }
 
@@ -75,7 +75,7 @@ core::PixelBox ViewRaster::box_of(const core::Observation& observation) const {
   float top = 1e9f;
   float right = -1e9f;
   float bottom = -1e9f;
-  for (const Vertex& vertex : vertices_) {
+  for (const SeenVertex& vertex : vertices_) {
     if (!(vertex.inverse_depth > 0.0f)) continue;
     left = std::min(left, vertex.x_px);
     right = std::max(right, vertex.x_px);
@@ -92,14 +92,45 @@ core::PixelBox ViewRaster::box_of(const core::Observation& observation) const {
           std::min(within(bottom + 1.0f, last_y), last_y)};
 }
 
-float ViewRaster::area_px2(std::size_t triangle_idx) const {
-  const auto& triangle = mesh_.triangles[triangle_idx];
-  const Vertex& a = vertices_[triangle[0]];
-  const Vertex& b = vertices_[triangle[1]];
-  const Vertex& c = vertices_[triangle[2]];
-  if (!(std::min({a.inverse_depth, b.inverse_depth, c.inverse_depth}) > 0.0f)) return 0.0f;
+std::optional<SeenTriangle> ViewRaster::triangle(std::size_t triangle_idx) const {
+  const auto& vertex = mesh_.triangles[triangle_idx];
+  const SeenTriangle triangle{{vertices_[vertex[0]], vertices_[vertex[1]], vertices_[vertex[2]]}};
+  const auto& [a, b, c] = triangle.corner;
   const float area = (c.x_px - a.x_px) * (b.y_px - a.y_px) - (b.x_px - a.x_px) * (c.y_px - a.y_px);
-  return std::max(0.0f, 0.5f * area);
+  // Comparisons are written so that a number that is not one fails.
+  const bool projected = std::min({a.inverse_depth, b.inverse_depth, c.inverse_depth}) > 0.0f;
+  const bool frontal = std::max({a.cosine, b.cosine, c.cosine}) >= kLeastCosine;
+  if (!projected || !frontal || !(area > 0.0f)) return std::nullopt;
+  return triangle;
+}
+
+std::optional<Eigen::Vector2f> ViewRaster::place(const SeenTriangle& triangle,
+                                                 const std::array<float, 3>& weight) const {
+  const float cosine = triangle.cosine(weight);
+  if (!(cosine >= kLeastCosine)) return std::nullopt;
+  // Weights on the surface, then on the image.
+  float depth_m = 0;
+  Eigen::Vector2f sum = Eigen::Vector2f::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SeenVertex& corner = triangle.corner[i];
+    const float part_m = weight[i] / corner.inverse_depth;
+    depth_m += part_m;
+    sum += part_m * Eigen::Vector2f(corner.x_px, corner.y_px);
+  }
+  const Eigen::Vector2f at_px = sum / depth_m;
+  if (!(at_px.x() >= static_cast<float>(box_.left) && at_px.x() < static_cast<float>(box_.right) &&
+        at_px.y() >= static_cast<float>(box_.top) && at_px.y() < static_cast<float>(box_.bottom))) {
+    return std::nullopt;
+  }
+  // The four pixels around must show one surface, and nothing nearer than the point: within a pixel
+  // the surface rises by tan = sqrt(1 - c^2) / c steps.
+  const auto x = static_cast<int>(at_px.x());
+  const auto y = static_cast<int>(at_px.y());
+  const float rise = 1.0f + 2.0f * std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
+  const bool whole =
+      is_whole(x, y) && is_whole(x + 1, y) && is_whole(x, y + 1) && is_whole(x + 1, y + 1);
+  if (!whole || depth_.at(x, y) > (1.0f + rise * step_) / depth_m) return std::nullopt;
+  return at_px;
 }
 
 }  // namespace sheen::fitting::detail

@@ -12,88 +12,87 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace sheen::fitting::detail {
+
+/// A vertex in a view.
+struct alignas(16) SeenVertex {
+  float x_px, y_px;
+  float inverse_depth;  ///< 1/m; 0 where it has no pixel
+  float cosine;         ///< between normal and view
+};
+
+/// A triangle in a view, its front on the image.
+struct SeenTriangle {
+  std::array<SeenVertex, 3> corner;
+
+  /// Interpolated on the surface; the weights of the corners add up to 1.
+  [[nodiscard]] float cosine(const std::array<float, 3>& weight) const {
+    return weight[0] * corner[0].cosine + weight[1] * corner[1].cosine +
+           weight[2] * corner[2].cosine;
+  }
+};
 
 /// A pixel whose centre shows a triangle.
 struct SurfacePixel {
   int x_px, y_px;
   std::array<float, 3> weight;  ///< of the triangle's corners on the surface, sum 1
-  float cosine;                 ///< between normal and view, interpolated, > 0
+  float cosine;                 ///< between normal and view, > 0
 };
 
-/// Which pixels of a view show which triangle. Pixels are left out that another triangle hides,
-/// that lie at a jump of depth (they mix two surfaces), near the border of the image, or that see
-/// the surface at a grazing angle. Keeps its storage from view to view.
+/// Where a view shows which part of a mesh. Places are left out that something else hides, that lie
+/// at a jump of depth (their pixels mix two surfaces), near the border of the image, or that are
+/// seen at a grazing angle. Keeps its storage from view to view.
 class ViewRaster {
  public:
-  /// A vertex in the view.
-  struct alignas(16) Vertex {
-    float x_px, y_px, inverse_depth, cosine;  ///< inverse depth 0 where it has no pixel
-  };
-
   /// `mesh` outlives it.
   ViewRaster(const core::Mesh& mesh, int threads);
 
   /// Looks at another view of the mesh.
   void set_view(const core::Observation& observation);
 
-  /// Area of a triangle on the image, square pixels, whether or not something hides it; 0 where it
-  /// is turned away or has a corner without a pixel.
-  [[nodiscard]] float area_px2(std::size_t triangle_idx) const;
+  /// A triangle, whether or not something hides it; nothing where it is turned away, edge-on, at a
+  /// grazing angle or has a corner without a pixel.
+  [[nodiscard]] std::optional<SeenTriangle> triangle(std::size_t triangle_idx) const;
 
-  [[nodiscard]] const Vertex& vertex(std::size_t vertex_idx) const { return vertices_[vertex_idx]; }
-
-  /// Whether the four pixels around a place show one surface, at this depth or farther.
-  [[nodiscard]] bool shows(float x_px, float y_px, float inverse_depth, float cosine) const {
-    // Comparisons are written so that a number that is not one fails.
-    if (!(x_px >= static_cast<float>(box_.left) && x_px < static_cast<float>(box_.right) &&
-          y_px >= static_cast<float>(box_.top) && y_px < static_cast<float>(box_.bottom))) {
-      return false;
-    }
-    const auto x = static_cast<int>(x_px);
-    const auto y = static_cast<int>(y_px);
-    const std::uint8_t* upper = whole_.data() + static_cast<std::size_t>(y - box_.top) * row_ +
-                                static_cast<std::size_t>(x - box_.left);
-    if ((upper[0] & upper[1] & upper[row_] & upper[row_ + 1]) == 0) return false;
-    // Within a pixel the surface rises by tan = sqrt(1 - c^2) / c steps.
-    const float rise = 1.0f + 2.0f * std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
-    return depth_.at(x, y) <= inverse_depth * (1.0f + rise * step_);
-  }
+  /// Where a point of a triangle is seen, pixels; nothing where it is not. The weights of the
+  /// corners add up to 1.
+  [[nodiscard]] std::optional<Eigen::Vector2f> place(const SeenTriangle& triangle,
+                                                     const std::array<float, 3>& weight) const;
 
   /// Calls `visit(pixel)` for every pixel that shows the triangle, row by row. May be called from
   /// several threads at once.
   template <typename Visit>
-  void for_each_pixel(std::size_t triangle_idx, const Visit& visit) const;
+  void for_each_pixel(const SeenTriangle& triangle, const Visit& visit) const;
 
  private:
+  static constexpr float kLeastCosine = 0.2f;  ///< as SamplingLimits
+
   void project(const core::Observation& observation);
   [[nodiscard]] core::PixelBox box_of(const core::Observation& observation) const;
   void find_whole_pixels();
+  /// Whether the pixel shows one surface; it lies in the box.
+  [[nodiscard]] bool is_whole(int x, int y) const {
+    return whole_[static_cast<std::size_t>(y - box_.top) * row_ +
+                  static_cast<std::size_t>(x - box_.left)] != 0;
+  }
 
   const core::Mesh& mesh_;
   int threads_;
   core::ZBuffer depth_;
-  std::vector<Vertex> vertices_;
-  core::PixelBox box_;           ///< pixels that may be visited
-  float step_ = 0;               ///< angle of a pixel: change of depth per pixel at 45 degrees
-  std::size_t row_ = 0;          ///< pixels in a row of the box
+  std::vector<SeenVertex> vertices_;
+  core::PixelBox box_;               ///< pixels that may be visited
+  float step_ = 0;                   ///< angle of a pixel: change of depth per pixel at 45 degrees
+  std::size_t row_ = 0;              ///< pixels in a row of the box
   std::vector<std::uint8_t> whole_;  ///< 1 where the four pixels around show the same surface
 };
 
 template <typename Visit>
-void ViewRaster::for_each_pixel(std::size_t triangle_idx, const Visit& visit) const {
-  constexpr float least_cosine = 0.2f;  // as SamplingLimits
-  const auto& triangle = mesh_.triangles[triangle_idx];
-  const Vertex& a = vertices_[triangle[0]];
-  const Vertex& b = vertices_[triangle[1]];
-  const Vertex& c = vertices_[triangle[2]];
+void ViewRaster::for_each_pixel(const SeenTriangle& triangle, const Visit& visit) const {
+  const auto& [a, b, c] = triangle.corner;
   const float area = (c.x_px - a.x_px) * (b.y_px - a.y_px) - (b.x_px - a.x_px) * (c.y_px - a.y_px);
-  if (!(area > 0.0f) || !(std::min({a.inverse_depth, b.inverse_depth, c.inverse_depth}) > 0.0f) ||
-      std::max({a.cosine, b.cosine, c.cosine}) < least_cosine) {
-    return;
-  }
   const auto first = [](float x, int least) {
     return std::max(least, static_cast<int>(std::ceil(std::max(x, -1.0f))));
   };
@@ -118,16 +117,11 @@ void ViewRaster::for_each_pixel(std::size_t triangle_idx, const Visit& visit) co
       const float near_b = at_b * b.inverse_depth;
       const float near_c = at_c * c.inverse_depth;
       const float inverse_depth = near_a + near_b + near_c;
-      if (whole_[static_cast<std::size_t>(y - box_.top) * row_ +
-                 static_cast<std::size_t>(x - box_.left)] == 0 ||
-          depth_.at(x, y) > inverse_depth * (1.0f + step_)) {
-        continue;
-      }
+      if (!is_whole(x, y) || depth_.at(x, y) > inverse_depth * (1.0f + step_)) continue;
       const float depth_m = 1.0f / inverse_depth;
       SurfacePixel pixel{x, y, {near_a * depth_m, near_b * depth_m, near_c * depth_m}, 0.0f};
-      pixel.cosine = pixel.weight[0] * a.cosine + pixel.weight[1] * b.cosine +
-                     pixel.weight[2] * c.cosine;
-      if (pixel.cosine >= least_cosine) visit(pixel);
+      pixel.cosine = triangle.cosine(pixel.weight);
+      if (pixel.cosine >= kLeastCosine) visit(pixel);
     }
   }
 }

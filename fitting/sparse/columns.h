@@ -6,7 +6,7 @@
 namespace sheen::fitting::sparse {
 
 /// Rows that a column has room for: the most samples a patch may keep.
-inline constexpr std::size_t kColumnRows = 512;
+inline constexpr std::size_t kColumnRows = 128;
 /// Rows are worked on in groups of this many.
 inline constexpr std::size_t kRowGroup = 8;
 

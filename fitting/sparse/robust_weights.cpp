@@ -11,8 +11,8 @@ namespace sheen::fitting::sparse {
 float suspect_threshold(std::span<const float> residuals, float floor) {
   constexpr float deviations_per_median = 1.4826f;
   constexpr float deviations = 5.0f;
-  assert(!residuals.empty() && residuals.size() <= kColumnRows);
-  std::array<float, kColumnRows> sorted{};
+  assert(!residuals.empty() && residuals.size() <= kMaxStoredSamples);
+  std::array<float, kMaxStoredSamples> sorted{};
   const auto end = std::copy(residuals.begin(), residuals.end(), sorted.begin());
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
   std::nth_element(sorted.begin(), middle, end);
@@ -28,7 +28,7 @@ float residual_around(std::span<const DirectedColour> samples, std::span<const f
                       std::size_t sample_idx) {
   // List the others by distance.
   constexpr std::size_t neighbours = 7;
-  std::array<std::pair<float, float>, kColumnRows> others;  // squared distance, residual
+  std::array<std::pair<float, float>, kMaxStoredSamples> others;  // squared distance, residual
   std::size_t count = 0;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (i == sample_idx) continue;

@@ -9,7 +9,7 @@
 namespace sheen::fitting::sparse {
 
 /// Residual size above which a sample is suspected to be an outlier: five robust standard
-/// deviations (1.4826 x the median), never less than five times `floor`. 1 to kColumnRows
+/// deviations (1.4826 x the median), never less than five times `floor`. 1 to kMaxStoredSamples
 /// sizes (>= 0).
 float suspect_threshold(std::span<const float> residuals, float floor);
 

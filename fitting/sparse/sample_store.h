@@ -15,7 +15,7 @@
 namespace sheen::fitting::sparse {
 
 /// Most samples a patch may keep.
-inline constexpr std::size_t kMaxStoredSamples = 128;
+inline constexpr std::size_t kMaxStoredSamples = kColumnRows;
 
 /// A direction and the colour seen from it, in single precision.
 struct DirectedColour {

@@ -206,7 +206,7 @@ bool Selection::censor(std::span<const DirectedColour> samples) {
 // what it asked for so far.
 bool Selection::discount_suspects(std::span<const DirectedColour> samples, Judgement judgement) {
   judge_samples();
-  std::array<float, kColumnRows> residuals = left_out_residual_;
+  std::array<float, kMaxStoredSamples> residuals = left_out_residual_;
   const bool censored = censor(samples);
   return set_factors(samples, {residuals.data(), samples.size()}, judgement) || censored;
 }
@@ -218,7 +218,7 @@ bool Selection::set_factors(std::span<const DirectedColour> samples,
   constexpr float noticeable = 0.01f;
   constexpr float times_around = 3.0f;
   const float threshold = suspect_threshold(residuals, tolerance_ / std::sqrt(3.0f));
-  std::array<float, kColumnRows> change;
+  std::array<float, kMaxStoredSamples> change;
   bool changed = false;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     float limit = threshold;

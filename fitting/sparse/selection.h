@@ -44,7 +44,7 @@ class Selection {
 
   /// From nothing: forward from both bases, backward, then up to twice more with outliers weighed
   /// down (by their leave-one-out residuals) and saturated samples censored. Depends on
-  /// the samples only. 1 to kColumnRows samples.
+  /// the samples only. 1 to kMaxStoredSamples samples.
   SelectedModel choose(std::span<const DirectedColour> samples);
 
   /// One step from `model`, given the sample that was just seen: refit, then at most one move
@@ -94,8 +94,8 @@ class Selection {
   StepwiseFit fit_;
   bool fit_is_current_ = false;                    ///< `fit_` is of `design_` as it is now
   Candidates all_candidates_;                      ///< as long as there are no terms
-  std::array<float, kColumnRows> factor_{};  ///< what weights are multiplied by
-  std::array<float, kColumnRows> left_out_residual_{};
+  std::array<float, kMaxStoredSamples> factor_{};  ///< what weights are multiplied by
+  std::array<float, kMaxStoredSamples> left_out_residual_{};
   std::size_t fits_ = 0;
 };
 

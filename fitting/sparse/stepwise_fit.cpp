@@ -83,7 +83,7 @@ void Design::set_ridge() {
 
 void Design::load(std::span<const DirectedColour> samples) {
   constexpr float far_outside = 8.0f;
-  assert(!samples.empty() && samples.size() <= kColumnRows && atoms().size() <= kMaxAtoms);
+  assert(!samples.empty() && samples.size() <= kMaxStoredSamples && atoms().size() <= kMaxAtoms);
   rows_ = samples.size();
   for (std::size_t row = 0; row < rows_; ++row) {
     u_.row[row] = samples[row].uv.x();

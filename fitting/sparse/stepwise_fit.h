@@ -47,7 +47,7 @@ struct TermList {
 /// they are asked for: most fits need a few of them. Large: keep one per thread.
 class Design {
  public:
-  /// Takes 1 to kColumnRows samples. Each weighs one over the number of samples within its
+  /// Takes 1 to kMaxStoredSamples samples. Each weighs one over the number of samples within its
   /// reach, itself included: a camera that dwells says no more than one that passes.
   void load(std::span<const DirectedColour> samples);
 

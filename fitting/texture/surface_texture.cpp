@@ -7,7 +7,19 @@
 namespace sheen::fitting {
 
 SurfaceTexture::SurfaceTexture(core::Atlas atlas)
-    : atlas_(std::move(atlas)), texels_(atlas_.texel_count(), Texel{128, 128, 128}) {}
+    : atlas_(std::move(atlas)),
+      texels_(atlas_.texel_count(), Texel{128, 128, 128}),
+      pages_per_row_(static_cast<std::size_t>((atlas_.width + kPage - 1) / kPage)) {}
+
+std::size_t SurfaceTexture::page_count() const {
+  return pages_per_row_ * static_cast<std::size_t>((atlas_.height + kPage - 1) / kPage);
+}
+
+cv::Rect SurfaceTexture::page(std::size_t page_idx) const {
+  const int x = kPage * static_cast<int>(page_idx % pages_per_row_);
+  const int y = kPage * static_cast<int>(page_idx / pages_per_row_);
+  return {x, y, std::min(kPage, atlas_.width - x), std::min(kPage, atlas_.height - y)};
+}
 
 Eigen::Vector3f SurfaceTexture::read(const Eigen::Vector2f& place) const {
   // Centres of texels lie at halves.

@@ -4,6 +4,7 @@
 #include "core/atlas/atlas.h"
 
 #include <Eigen/Core>
+#include <opencv2/core/mat.hpp>
 
 #include <array>
 #include <cstddef>
@@ -18,6 +19,10 @@ using Texel = std::array<std::uint8_t, 3>;
 /// Colours over a surface, finer than its vertices.
 class SurfaceTexture {
  public:
+  /// Texels are changed and sent to a renderer in square pages of this side, row by row; those at
+  /// the right and lower border may be smaller.
+  static constexpr int kPage = 64;
+
   /// Mid grey everywhere.
   explicit SurfaceTexture(core::Atlas atlas);
 
@@ -26,6 +31,15 @@ class SurfaceTexture {
   [[nodiscard]] const std::vector<Texel>& texels() const { return texels_; }
   [[nodiscard]] std::vector<Texel>& texels() { return texels_; }
 
+  [[nodiscard]] std::size_t page_count() const;
+  /// The page that holds a texel.
+  [[nodiscard]] std::size_t page_of(std::size_t texel_idx) const {
+    const auto width = static_cast<std::size_t>(atlas_.width);
+    return texel_idx / width / kPage * pages_per_row_ + texel_idx % width / kPage;
+  }
+  /// Texels that a page covers.
+  [[nodiscard]] cv::Rect page(std::size_t page_idx) const;
+
   /// Bilinear, sRGB in [0, 1]; `place` on the atlas, texels. Beyond the outermost centres the
   /// texture goes on as it ends.
   [[nodiscard]] Eigen::Vector3f read(const Eigen::Vector2f& place) const;
@@ -33,15 +47,15 @@ class SurfaceTexture {
   /// The same at a place on a triangle of the mesh.
   [[nodiscard]] Eigen::Vector3f at(std::size_t triangle_idx,
                                    const Eigen::Vector3f& barycentric) const {
-    const Eigen::Vector2f place = barycentric[0] * atlas_.place(triangle_idx, 0) +
-                                  barycentric[1] * atlas_.place(triangle_idx, 1) +
-                                  barycentric[2] * atlas_.place(triangle_idx, 2);
-    return read(place);
+    return read(barycentric[0] * atlas_.place(triangle_idx, 0) +
+                barycentric[1] * atlas_.place(triangle_idx, 1) +
+                barycentric[2] * atlas_.place(triangle_idx, 2));
   }
 
  private:
   core::Atlas atlas_;
   std::vector<Texel> texels_;
+  std::size_t pages_per_row_;
 };
 
 }  // namespace sheen::fitting
