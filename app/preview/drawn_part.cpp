@@ -6,7 +6,7 @@
 namespace sheen::app {
 namespace {
 
-constexpr float kMargin = 0.03f;  // a lens bends the box's edges outwards between its corners
+constexpr float kLensMargin = 0.03f;  // a lens bends the box's edges outwards between its corners
 
 }  // namespace
 
@@ -21,8 +21,8 @@ Eigen::AlignedBox2f drawn_part(const Eigen::AlignedBox3d& box, const core::Camer
     if (!pixel) return all;
     part.extend(((pixel->array() + 0.5) / size_px).matrix().cast<float>());
   }
-  part.min().array() -= kMargin;
-  part.max().array() += kMargin;
+  part.min().array() -= kLensMargin;
+  part.max().array() += kLensMargin;
   return part.intersection(all);
 }
 

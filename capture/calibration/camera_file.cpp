@@ -20,15 +20,15 @@ namespace {
 
 // OpenCV's parser recurses without a limit; a short text with few brackets cannot exhaust the
 // stack.
-constexpr std::size_t kMaxBytes = 16 * 1024;
+constexpr std::size_t kMaxCameraBytes = 16 * 1024;
 constexpr auto kMaxBrackets = 64;
-constexpr int kMaxSidePx = 1 << 15;
+constexpr int kMaxImageSidePx = 1 << 15;
 constexpr const char* kRemedy = "see docs/session-format.md for camera.yaml";
 
 class CameraReader {
  public:
   explicit CameraReader(const std::filesystem::path& path) : path_(path) {
-    const std::string text = read_text_file(path, kMaxBytes);
+    const std::string text = read_text_file(path, kMaxCameraBytes);
     const auto brackets =
         std::count_if(text.begin(), text.end(), [](char c) { return c == '[' || c == '{'; });
     if (brackets > kMaxBrackets) fail("is nested too deeply for a camera file");
@@ -45,7 +45,7 @@ class CameraReader {
     const cv::FileNode node = storage_[key];
     if (!node.isInt()) fail(std::string(key) + " is missing or no whole number");
     const int value = node;
-    if (value < 1 || value > kMaxSidePx) fail(std::string(key) + " is out of range");
+    if (value < 1 || value > kMaxImageSidePx) fail(std::string(key) + " is out of range");
     return value;
   }
 

@@ -16,7 +16,7 @@
 namespace sheen::capture {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{4} << 20;
+constexpr std::size_t kMaxBoardBytes = std::size_t{4} << 20;
 constexpr double kMaxExtentM = 1e3;
 constexpr const char* kRemedy = "see docs/session-format.md for the two layouts of board.yaml";
 
@@ -24,7 +24,7 @@ constexpr const char* kRemedy = "see docs/session-format.md for the two layouts 
 class BoardReader {
  public:
   explicit BoardReader(const std::filesystem::path& path)
-      : path_(path), root_(YAML::Load(read_text_file(path, kMaxBytes))) {}
+      : path_(path), root_(YAML::Load(read_text_file(path, kMaxBoardBytes))) {}
 
   [[noreturn]] void fail(const std::string& fault) const {
     throw core::bad_input(path_, fault, kRemedy);

@@ -17,16 +17,16 @@
 namespace sheen::capture {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
+constexpr std::size_t kMaxTrajectoryBytes = std::size_t{256} << 20;
 constexpr double kMaxDistanceM = 1e6;  // beyond it single precision has nothing left to say
-constexpr const char* kRemedy = "write lines of the form `stamp tx ty tz qx qy qz qw`";
+constexpr const char* kTrajectoryRemedy = "write lines of the form `stamp tx ty tz qx qy qz qw`";
 
 bool is_integer(double stamp) {
   return stamp == std::floor(stamp);
 }
 
 [[noreturn]] void fail(const std::filesystem::path& path, int line, const std::string& fault) {
-  throw core::bad_input(path, "line " + std::to_string(line) + " " + fault, kRemedy);
+  throw core::bad_input(path, "line " + std::to_string(line) + " " + fault, kTrajectoryRemedy);
 }
 
 /// Exactly eight numbers, whatever the locale.
@@ -89,7 +89,7 @@ std::optional<Eigen::Isometry3d> Trajectory::board_from_camera(const Frame& fram
 }
 
 Trajectory read_trajectory(const std::filesystem::path& path) {
-  std::istringstream in(read_text_file(path, kMaxBytes));
+  std::istringstream in(read_text_file(path, kMaxTrajectoryBytes));
   std::vector<Trajectory::Entry> entries;
   std::string text;
   for (int line = 1; std::getline(in, text); ++line) {
@@ -97,7 +97,7 @@ Trajectory read_trajectory(const std::filesystem::path& path) {
     if (first == std::string::npos || text[first] == '#') continue;
     entries.push_back(parse_line(path, line, text));
   }
-  if (entries.empty()) throw core::bad_input(path, "holds no pose", kRemedy);
+  if (entries.empty()) throw core::bad_input(path, "holds no pose", kTrajectoryRemedy);
 
   Trajectory trajectory(std::move(entries));
   const auto& sorted = trajectory.entries();

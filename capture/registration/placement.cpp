@@ -17,7 +17,7 @@
 namespace sheen::capture {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
+constexpr std::size_t kMaxPlacementBytes = std::size_t{1} << 20;
 constexpr std::size_t kMinPairs = 3;
 constexpr double kFarthestM = 1e3;
 constexpr double kNarrowest = 1e-3;  // width over length of points that lie on one line
@@ -50,7 +50,7 @@ std::optional<PointPair> parse_line(std::string line, const std::filesystem::pat
 }  // namespace
 
 std::vector<PointPair> read_point_pairs(const std::filesystem::path& path) {
-  std::istringstream lines(read_text_file(path, kMaxBytes));
+  std::istringstream lines(read_text_file(path, kMaxPlacementBytes));
   std::vector<PointPair> pairs;
   int number = 0;
   for (std::string line; std::getline(lines, line);) {

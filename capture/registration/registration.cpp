@@ -34,7 +34,7 @@ constexpr double kFarReach = 0.7;       // share of the search distance at which
 constexpr double kColourSlackPx = 1.5;  // what the ends of colours may differ by between good views
 constexpr double kEdgeSlackPx = 0.25;
 constexpr double kSmallestSpreadPx = 0.3;
-constexpr double kIndependence = 0.05;  // of the points: neighbours and views share their errors
+constexpr double kIndependentShare = 0.05;  // of the points: neighbours and views share their errors
 constexpr int kSmallestViews = 3;
 
 /// Normal equations of one view. Unknowns: turn about the object's centre (times its radius, so
@@ -230,7 +230,7 @@ class Aligner {
 
   /// What is to be added to the diagonal of H, for matches of the given noise.
   [[nodiscard]] double prior_information(double noise_px) const {
-    return noise_px * noise_px / (kIndependence * limits_.search_m * limits_.search_m);
+    return noise_px * noise_px / (kIndependentShare * limits_.search_m * limits_.search_m);
   }
 
   /// Gauss-Newton step. A weak prior keeps what the outline does not tell near the guess: one

@@ -16,7 +16,7 @@
 namespace sheen::capture {
 namespace {
 
-constexpr std::size_t kMaxBytes = std::size_t{1} << 28;
+constexpr std::size_t kMaxStampBytes = std::size_t{1} << 28;
 constexpr double kMicroseconds = 1e6;
 
 /// The time in the line of frame `index`; nothing when it is no such line.
@@ -71,7 +71,7 @@ double stamp_seconds(std::int64_t time_us) {
 }
 
 std::vector<double> read_stamps(const std::filesystem::path& path) {
-  const std::string text = read_text_file(path, kMaxBytes);
+  const std::string text = read_text_file(path, kMaxStampBytes);
   const auto fail = [&](const std::string& fault) {
     return core::bad_input(path, fault, "see docs/session-format.md");
   };

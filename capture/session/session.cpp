@@ -4,6 +4,7 @@
 #include "capture/calibration/camera_file.h"
 #include "capture/files/text_file.h"
 #include "capture/session/frame_stamps.h"
+#include "capture/session/session_file.h"
 #include "capture/source/image_check.h"
 #include "capture/source/image_folder_source.h"
 #include "capture/source/video_source.h"
@@ -21,7 +22,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
 constexpr const char* kRemedy = "see docs/session-format.md";
 
 /// session.json with errors that name the file and warnings for what is not understood.
@@ -29,7 +29,7 @@ class SessionReader {
  public:
   explicit SessionReader(const std::filesystem::path& folder)
       : folder_(folder), path_(folder / "session.json") {
-    root_ = json::parse(read_text_file(path_, kMaxBytes), nullptr, false);
+    root_ = json::parse(read_text_file(path_, kMaxSessionBytes), nullptr, false);
     if (!root_.is_object()) fail("is no JSON object");
   }
 

@@ -12,8 +12,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMaxBytes = std::size_t{1} << 20;
-
 ordered_json transform_json(const Eigen::Isometry3d& transform) {
   auto numbers = ordered_json::array();
   for (Eigen::Index i = 0; i < 16; ++i) numbers.push_back(transform.matrix()(i / 4, i % 4));
@@ -51,7 +49,7 @@ void write_session_file(const std::filesystem::path& folder, const SessionFile& 
 
 void write_board_from_object(const std::filesystem::path& from, const std::filesystem::path& to,
                              const Eigen::Isometry3d& board_from_object) {
-  auto session = ordered_json::parse(read_text_file(from, kMaxBytes), nullptr, false);
+  auto session = ordered_json::parse(read_text_file(from, kMaxSessionBytes), nullptr, false);
   if (!session.is_object() || !session.contains("object") || !session["object"].is_object()) {
     throw core::bad_input(from, "holds no \"object\"", "see docs/session-format.md");
   }

@@ -3,11 +3,15 @@
 
 #include <Eigen/Geometry>
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <string>
 
 namespace sheen::capture {
+
+/// No honest session.json is larger.
+inline constexpr std::size_t kMaxSessionBytes = std::size_t{1} << 20;
 
 /// What a new session.json says (docs/session-format.md); paths are relative to its folder. Either
 /// `video` or `images` is set, and `board` or `poses` or both.

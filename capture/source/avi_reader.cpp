@@ -10,7 +10,7 @@
 namespace sheen::capture {
 namespace {
 
-constexpr std::uint32_t kMaxFrames = 100'000'000;
+constexpr std::uint32_t kMostFrames = 100'000'000;
 
 std::uint32_t u32(const std::uint8_t* bytes) {
   return bytes[0] | std::uint32_t{bytes[1]} << 8 | std::uint32_t{bytes[2]} << 16 |
@@ -112,7 +112,7 @@ void AviReader::note_stream_header(const Chunk& chunk) {
   if (scale == 0 || rate == 0) return;
   video_stream_ = stream;
   header_.fps = static_cast<double>(rate) / scale;
-  if (length > 0 && length <= kMaxFrames) header_.frames = static_cast<int>(length);
+  if (length > 0 && length <= kMostFrames) header_.frames = static_cast<int>(length);
 }
 
 void AviReader::note_stream_format(const Chunk& chunk) {

@@ -13,7 +13,6 @@
 namespace sheen::capture::synthetic {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kGoldenAngle = 2.39996323f;
 constexpr float kFar = std::numeric_limits<float>::max();
 constexpr float kSurfaceOffset = 2e-4f;  // metres; a fifth of a millimetre clears rounding
@@ -88,7 +87,7 @@ class Probe {
           cosine * (direction.z() < 0 ? board_radiance(origin, direction)
                                       : room_radiance(studio_, direction));
     }
-    incident.ambient_irradiance *= kPi / cosines;
+    incident.ambient_irradiance *= std::numbers::pi_v<float> / cosines;
     incident.openness = open / cosines;
     return incident;
   }
@@ -164,7 +163,7 @@ std::vector<Incident> bake_incident(const Studio& studio, const core::Mesh& obje
   const Probe probe(studio, caster);
   const auto board_radiance = [&](const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) {
     const Eigen::Vector3f foot = origin - origin.z() / direction.z() * direction;
-    return Eigen::Vector3f(board_reflectance / kPi * ground.irradiance(foot.x(), foot.y()));
+    return Eigen::Vector3f(board_reflectance / std::numbers::pi_v<float> * ground.irradiance(foot.x(), foot.y()));
   };
   std::vector<Incident> incident(object.positions.size());
   core::parallel_for(incident.size(), threads, [&](std::size_t begin, std::size_t end) {

@@ -15,7 +15,7 @@ const Eigen::Vector3f kTeal(0.012f, 0.105f, 0.115f);
 const Eigen::Vector3f kTerracotta(0.42f, 0.105f, 0.042f);
 const Eigen::Vector3f kIvory(0.60f, 0.51f, 0.37f);
 const Eigen::Vector3f kVein(0.05f, 0.035f, 0.025f);
-const Eigen::Vector3f kInk(0.02f, 0.025f, 0.06f);
+const Eigen::Vector3f kPrintInk(0.02f, 0.025f, 0.06f);
 
 constexpr float kGlossySpecular = 0.20f;
 constexpr float kGlossyAlpha = 0.20f;
@@ -100,7 +100,7 @@ Brdf brdf_at(SceneKind kind, const Eigen::Vector3f& point_in_object, float unit_
                                0.35f * smooth_noise(1.7f * p));
   albedo = mix(albedo, kVein, 0.65f * (1 - smooth_step(0.02f, 0.16f, ridge)));
 
-  if (kind == SceneKind::textured) albedo = mix(albedo, kInk, 0.9f * ink_at(p));
+  if (kind == SceneKind::textured) albedo = mix(albedo, kPrintInk, 0.9f * ink_at(p));
 
   Brdf brdf;
   brdf.albedo = albedo.cwiseMax(0.004f).cwiseMin(0.9f);

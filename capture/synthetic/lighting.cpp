@@ -8,16 +8,15 @@
 namespace sheen::capture::synthetic {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 
 SoftBox soft_box(float azimuth_deg, float elevation_deg, float radius_deg,
                  const Eigen::Vector3f& irradiance) {
-  const float azimuth = azimuth_deg * kPi / 180;
-  const float elevation = elevation_deg * kPi / 180;
+  const float azimuth = azimuth_deg * std::numbers::pi_v<float> / 180;
+  const float elevation = elevation_deg * std::numbers::pi_v<float> / 180;
   return {{std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
            std::sin(elevation)},
           irradiance,
-          radius_deg * kPi / 180};
+          radius_deg * std::numbers::pi_v<float> / 180};
 }
 
 float schlick(float f0, float cosine) {
@@ -29,7 +28,7 @@ float schlick(float f0, float cosine) {
 float ggx(float alpha, float cos_half, float cos_light, float cos_eye) {
   const float a2 = alpha * alpha;
   const float d = cos_half * cos_half * (a2 - 1) + 1;
-  const float distribution = a2 / (kPi * d * d);
+  const float distribution = a2 / (std::numbers::pi_v<float> * d * d);
   const float light = cos_eye * std::sqrt(cos_light * cos_light * (1 - a2) + a2);
   const float eye = cos_light * std::sqrt(cos_eye * cos_eye * (1 - a2) + a2);
   return distribution * 0.5f / std::max(light + eye, 1e-6f);
@@ -40,7 +39,7 @@ Eigen::Vector3f lobe(const Brdf& brdf, const Eigen::Vector3f& normal,
                      const Eigen::Vector3f& towards_eye, const SoftBox& box) {
   const float cos_light = normal.dot(box.towards);
   if (cos_light <= 0) return Eigen::Vector3f::Zero();
-  const Eigen::Vector3f diffuse = brdf.albedo / kPi;
+  const Eigen::Vector3f diffuse = brdf.albedo / std::numbers::pi_v<float>;
   if (brdf.specular <= 0) return diffuse * cos_light;
 
   // Widen the lobe: a cone of half angle r is spread over half vectors by r / 2.
@@ -92,7 +91,7 @@ Eigen::Vector3f reflected_radiance(const Brdf& brdf, const Eigen::Vector3f& norm
 
   // Add the room: diffusely, and mirrored at the strength of the Fresnel term.
   const float fresnel = brdf.specular > 0 ? schlick(brdf.specular, cos_eye) : 0.0f;
-  radiance += (1 - fresnel) * brdf.albedo.cwiseProduct(incident.ambient_irradiance) / kPi;
+  radiance += (1 - fresnel) * brdf.albedo.cwiseProduct(incident.ambient_irradiance) / std::numbers::pi_v<float>;
   if (fresnel > 0) {
     const Eigen::Vector3f mirrored = 2 * cos_eye * normal - towards_eye;
     radiance += fresnel * incident.openness * room_radiance(studio, mirrored);

@@ -20,7 +20,6 @@
 namespace sheen::capture::synthetic {
 namespace {
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr double kTurnRad = 0.35;          // of the object on the board
 constexpr float kPatternOfRadius = 0.18f;  // half a band over the radius of the object
 constexpr float kMeanBoardReflectance = 0.5f;
@@ -118,7 +117,7 @@ Eigen::Vector3f Scene::Impl::board_value(const Eigen::Vector3f& origin,
                                          const Eigen::Vector3f& direction) const {
   if (direction.z() > -1e-3f) return 0.5f * room_radiance(studio, direction);
   const Eigen::Vector3f foot = origin - origin.z() / direction.z() * direction;
-  return print.reflectance(foot.x(), foot.y()) / kPi * ground.irradiance(foot.x(), foot.y());
+  return print.reflectance(foot.x(), foot.y()) / std::numbers::pi_v<float> * ground.irradiance(foot.x(), foot.y());
 }
 
 Scene::Scene(SceneKind kind, core::Mesh object, float lift_m, int threads) {

@@ -13,7 +13,6 @@
 namespace sheen::capture::synthetic {
 namespace {
 
-constexpr double kTwoPi = 2 * std::numbers::pi;
 constexpr double kRingRadius = 0.0425;    // of the torus' core circle
 constexpr double kSectionRadius = 0.020;  // of the torus' cross section, across
 constexpr double kSectionHeight = 0.025;  // and up
@@ -47,7 +46,7 @@ std::vector<double> cumulative_lengths() {
   lengths.reserve(steps + 1);
   Eigen::Vector3d previous = knot_at(0).position;
   for (int i = 1; i <= steps; ++i) {
-    const Eigen::Vector3d current = knot_at(kTwoPi * i / steps).position;
+    const Eigen::Vector3d current = knot_at(2 * std::numbers::pi * i / steps).position;
     lengths.push_back(lengths.back() + (current - previous).norm());
     previous = current;
   }
@@ -59,13 +58,13 @@ double parameter_at(const std::vector<double>& lengths, double length) {
   const auto above = std::upper_bound(lengths.begin() + 1, lengths.end() - 1, length);
   const double part = (length - *(above - 1)) / (*above - *(above - 1));
   const auto step = static_cast<double>(above - 1 - lengths.begin());
-  return kTwoPi * (step + part) / static_cast<double>(lengths.size() - 1);
+  return 2 * std::numbers::pi * (step + part) / static_cast<double>(lengths.size() - 1);
 }
 
 void append_ring(const CurvePoint& centre, std::uint32_t sides, core::Mesh& mesh) {
   const Eigen::Vector3d binormal = centre.tangent.cross(centre.normal);
   for (std::uint32_t side = 0; side < sides; ++side) {
-    const double phi = kTwoPi * side / sides;
+    const double phi = 2 * std::numbers::pi * side / sides;
     const Eigen::Vector3d normal = std::cos(phi) * centre.normal + std::sin(phi) * binormal;
     mesh.positions.emplace_back((centre.position + kTubeRadius * normal).cast<float>());
     mesh.normals.emplace_back(normal.cast<float>().normalized());
@@ -79,7 +78,7 @@ core::Mesh torus_knot(int vertices) {
 
   // Choose rings and sides so that the quads are about square.
   const std::vector<double> lengths = cumulative_lengths();
-  const double aspect = lengths.back() / (kTwoPi * kTubeRadius);
+  const double aspect = lengths.back() / (2 * std::numbers::pi * kTubeRadius);
   const auto sides = static_cast<std::uint32_t>(std::lround(std::sqrt(vertices / aspect)));
   const auto rings = static_cast<std::uint32_t>(std::lround(vertices / static_cast<double>(sides)));
 

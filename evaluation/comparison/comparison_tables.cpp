@@ -84,8 +84,9 @@ std::string to_csv(const Comparison& comparison) {
     std::string names;
     std::string values;
     for (const auto& [name, value] : fields.items()) {
-      names += (names.empty() ? "" : ",") + name;
-      values += (values.empty() ? "" : ",") + csv_value(value);
+      const char* const separator = names.empty() ? "" : ",";
+      names.append(separator).append(name);
+      values.append(separator).append(csv_value(value));
     }
     if (csv.empty()) csv = names + '\n';
     csv += values + '\n';

@@ -14,9 +14,8 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kPi = std::numbers::pi_v<float>;
-constexpr float kDegree = kPi / 180.0f;
-const float kGoldenAngle = kPi * (3.0f - std::sqrt(5.0f));
+constexpr float kDegree = std::numbers::pi_v<float> / 180.0f;
+const float kGoldenAngle = std::numbers::pi_v<float> * (3.0f - std::sqrt(5.0f));
 
 // Point `idx` of `count` on the cap with z >= lowest round +z: a spiral of equal solid angles.
 Vector3f spiral(std::size_t idx, std::size_t count, float lowest) {
@@ -30,7 +29,7 @@ Vector3f spiral(std::size_t idx, std::size_t count, float lowest) {
 void add_lamp(Environment& environment, const Vector3f& towards, float radius,
               const Vector3f& radiance, std::size_t count) {
   const core::TangentFrame frame = core::tangent_frame(towards);
-  const float solid_angle = 2.0f * kPi * (1.0f - std::cos(radius));
+  const float solid_angle = 2.0f * std::numbers::pi_v<float> * (1.0f - std::cos(radius));
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3f local = spiral(i, count, std::cos(radius));
     environment.direction.push_back(local.x() * frame.tangent + local.y() * frame.bitangent +
@@ -42,7 +41,7 @@ void add_lamp(Environment& environment, const Vector3f& towards, float radius,
 // Adds light from everywhere; `radiance` maps a direction to RGB.
 template <typename Radiance>
 void add_sphere(Environment& environment, std::size_t count, const Radiance& radiance) {
-  const float solid_angle = 4.0f * kPi / static_cast<float>(count);
+  const float solid_angle = 4.0f * std::numbers::pi_v<float> / static_cast<float>(count);
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3f direction = spiral(i, count, -1.0f);
     environment.direction.push_back(direction);

@@ -9,7 +9,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr float kPi = std::numbers::pi_v<float>;
 
 Vector3f random_colour(Random& random, float low, float high) {
   return {random.uniform(low, high), random.uniform(low, high), random.uniform(low, high)};
@@ -84,14 +83,14 @@ float smith_lambda(const Material& material, const Vector3f& direction) {
 }
 
 Vector3f reflectance(const Material& material, const Vector3f& light, const Vector3f& view) {
-  const Vector3f diffuse = material.albedo / kPi;
+  const Vector3f diffuse = material.albedo / std::numbers::pi_v<float>;
   if (!material.is_glossy()) return diffuse;
   const Vector3f half = (light + view).normalized();
   const float x = half.x() / material.alpha_x;
   const float y = half.y() / material.alpha_y;
   const float stretched = x * x + y * y + half.z() * half.z();
   const float distribution =
-      1.0f / (kPi * material.alpha_x * material.alpha_y * stretched * stretched);
+      1.0f / (std::numbers::pi_v<float> * material.alpha_x * material.alpha_y * stretched * stretched);
   const float shadowing =
       1.0f / (1.0f + smith_lambda(material, light) + smith_lambda(material, view));
   const float m = 1.0f - half.dot(view);

@@ -17,13 +17,13 @@ namespace {
 
 using Eigen::Vector3f;
 
-enum Stream : std::uint64_t {
-  kPoint = 201,
-  kFrame = 202,
-  kNoise = 203,
-  kTraining = 204,
-  kTest = 205,
-  kScattered = 206
+enum SceneStream : std::uint64_t {
+  kScenePoint = 201,
+  kSceneFrame = 202,
+  kSceneNoise = 203,
+  kSceneTraining = 204,
+  kSceneTest = 205,
+  kSceneScattered = 206
 };
 
 // Positions on the walk in its finest division: frame k of any division is one of them.
@@ -46,7 +46,7 @@ std::vector<Frame> walk(const HandheldOrbit& orbit, std::size_t count,
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint64_t key = i * kFinestSteps / count;
     const Vector3f actual = orbit.at(static_cast<float>(key) / static_cast<float>(kFinestSteps));
-    Random random(hash_of({options.seed, kFrame, key}));
+    Random random(hash_of({options.seed, kSceneFrame, key}));
     // The error is a turn about the object: the frame z > 0 of with_pose_error is the camera's own.
     const core::TangentFrame camera = core::tangent_frame(actual);
     const Vector3f error = with_pose_error({0, 0, 1}, options.corruption, random);
@@ -86,7 +86,7 @@ struct PointMaker {
     const core::TangentFrame frame = core::tangent_frame(normal_of(point_idx, options.points));
     Eigen::Matrix3f world_from_patch;
     world_from_patch << frame.tangent, frame.bitangent, frame.normal;
-    const std::uint64_t key = hash_of({options.seed, kPoint, point_idx});
+    const std::uint64_t key = hash_of({options.seed, kScenePoint, point_idx});
     Random random(key);
     const MaterialClass material = material_of(point_idx);
     const Lumisphere lumisphere(random_material(material, random), world_from_patch, environment);
@@ -102,7 +102,7 @@ struct PointMaker {
       Vector3f reported = world_from_patch.transpose() * training[i].reported;
       reported.z() = std::max(reported.z(), 1e-3f);
       reported.normalize();
-      Random noise(hash_of({key, kNoise, training[i].key}));
+      Random noise(hash_of({key, kSceneNoise, training[i].key}));
       along_path.training.push_back(
           {static_cast<std::uint32_t>(i), reported.head<2>(),
            photographed(lumisphere.radiance(local), options.corruption, noise)});
@@ -139,8 +139,8 @@ double visible_fraction(const HandheldOrbit& orbit, std::size_t points) {
 
 Scene make_scene(const SceneOptions& options, const Environment& environment) {
   // Walk around the object: training in three rounds, tests in one and a half on another height.
-  const HandheldOrbit training_orbit(hash_of({options.seed, kTraining}), 0.15f, 1.2f, 3.0f);
-  const HandheldOrbit test_orbit(hash_of({options.seed, kTest}), 0.9f, 0.3f, 1.5f);
+  const HandheldOrbit training_orbit(hash_of({options.seed, kSceneTraining}), 0.15f, 1.2f, 3.0f);
+  const HandheldOrbit test_orbit(hash_of({options.seed, kSceneTest}), 0.9f, 0.3f, 1.5f);
   const double fraction = visible_fraction(training_orbit, options.points);
   const auto frame_count = static_cast<std::size_t>(
       std::lround(static_cast<double>(options.samples_per_point) / fraction));
@@ -149,7 +149,7 @@ Scene make_scene(const SceneOptions& options, const Environment& environment) {
   std::vector<Vector3f> scattered_eyes;
   for (std::size_t i = 0; i < kTestFrames; ++i) {
     path_eyes.push_back(test_orbit.at(static_cast<float>(i) / static_cast<float>(kTestFrames)));
-    Random random(hash_of({options.seed, kScattered, i}));
+    Random random(hash_of({options.seed, kSceneScattered, i}));
     scattered_eyes.push_back(random.on_sphere(kLowestEye, kHighestEye));
   }
   // Let every point look.

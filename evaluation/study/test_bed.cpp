@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-enum Stream : std::uint64_t { kPoint = 101, kViews = 102, kNoise = 103 };
+enum TestBedStream : std::uint64_t { kPoint = 101, kViews = 102, kNoise = 103 };
 
 // A random frame: normals that look up or sideways, tangents turned at random.
 Eigen::Matrix3f random_frame(Random& random) {

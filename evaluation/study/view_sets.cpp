@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3f;
 
 // Streams of random numbers that must not meet.
-enum Stream : std::uint64_t { kScattered = 1, kTest = 2, kArcs = 3, kClusters = 4 };
+enum ViewStream : std::uint64_t { kScattered = 1, kTest = 2, kArcs = 3, kClusters = 4 };
 
 std::vector<View> scattered_views(std::size_t count, std::uint64_t seed, bool with_gap) {
   std::vector<View> views;

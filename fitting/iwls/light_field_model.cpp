@@ -12,14 +12,14 @@ namespace sheen::fitting::iwls {
 namespace {
 
 // Slots without a centre stand where no support reaches: the model file limits its radius.
-constexpr float kFarAway = 1e6f;
+constexpr float kUnusedCenter = 1e6f;
 
 }  // namespace
 
 LightFieldModel::LightFieldModel(ModelShape shape, std::size_t patch_count)
     : shape_(std::move(shape)),
       slots_(slots_of_centers(shape_.centers.size())),
-      u_(slot_count(slots_.size()), kFarAway),
+      u_(slot_count(slots_.size()), kUnusedCenter),
       v_(u_),
       evaluate_(evaluate_kernels().of_terms(shape_.terms)),
       per_patch_(u_.size() * static_cast<std::size_t>(3 * shape_.terms)),

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "core/diagnostics/error.h"
 #include "render/context/context.h"
+#include "render/context/runtime_library.h"
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
-#include <dlfcn.h>
 
 #include <array>
 #include <memory>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -16,44 +14,22 @@
 namespace sheen::render {
 namespace {
 
-constexpr const char* kLibrary = "libEGL.so.1";
-
-core::Error failure(const std::string& fault) {
-  return {core::Error::Kind::run_failed, kLibrary, fault,
-          "install the package libegl1 and a driver with OpenGL 4.5"};
-}
-
-/// Opened at run time, so that machines without it still run everything else; never unloaded, since
-/// drivers leave hooks for the end of the process.
-void* open_library() {
-  void* const library = dlopen(kLibrary, RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
-  if (library == nullptr) throw failure("cannot be loaded");
-  return library;
-}
-
-template <typename Pointer>
-Pointer symbol(void* library, const char* name) {
-  void* const address = dlsym(library, name);
-  if (address == nullptr) throw failure(std::string("lacks ") + name);
-  return reinterpret_cast<Pointer>(address);
-}
-
 /// The entry points this file calls.
 struct Egl {
-  void* library = open_library();
+  RuntimeLibrary library{"libEGL.so.1", "install the package libegl1 and a driver with OpenGL 4.5"};
   decltype(&eglGetProcAddress) get_proc_address =
-      core_function<decltype(&eglGetProcAddress)>("eglGetProcAddress");
-  decltype(&eglInitialize) initialize = core_function<decltype(&eglInitialize)>("eglInitialize");
-  decltype(&eglTerminate) terminate = core_function<decltype(&eglTerminate)>("eglTerminate");
-  decltype(&eglBindAPI) bind_api = core_function<decltype(&eglBindAPI)>("eglBindAPI");
+      library.symbol<decltype(&eglGetProcAddress)>("eglGetProcAddress");
+  decltype(&eglInitialize) initialize = library.symbol<decltype(&eglInitialize)>("eglInitialize");
+  decltype(&eglTerminate) terminate = library.symbol<decltype(&eglTerminate)>("eglTerminate");
+  decltype(&eglBindAPI) bind_api = library.symbol<decltype(&eglBindAPI)>("eglBindAPI");
   decltype(&eglChooseConfig) choose_config =
-      core_function<decltype(&eglChooseConfig)>("eglChooseConfig");
+      library.symbol<decltype(&eglChooseConfig)>("eglChooseConfig");
   decltype(&eglCreateContext) create_context =
-      core_function<decltype(&eglCreateContext)>("eglCreateContext");
+      library.symbol<decltype(&eglCreateContext)>("eglCreateContext");
   decltype(&eglDestroyContext) destroy_context =
-      core_function<decltype(&eglDestroyContext)>("eglDestroyContext");
+      library.symbol<decltype(&eglDestroyContext)>("eglDestroyContext");
   decltype(&eglMakeCurrent) make_current =
-      core_function<decltype(&eglMakeCurrent)>("eglMakeCurrent");
+      library.symbol<decltype(&eglMakeCurrent)>("eglMakeCurrent");
   PFNEGLQUERYDEVICESEXTPROC query_devices =
       extension<PFNEGLQUERYDEVICESEXTPROC>("eglQueryDevicesEXT");
   PFNEGLQUERYDEVICESTRINGEXTPROC query_device_string =
@@ -63,14 +39,8 @@ struct Egl {
 
  private:
   template <typename Pointer>
-  [[nodiscard]] Pointer core_function(const char* name) const {
-    return symbol<Pointer>(library, name);
-  }
-  template <typename Pointer>
   [[nodiscard]] Pointer extension(const char* name) const {
-    const auto pointer = reinterpret_cast<Pointer>(get_proc_address(name));
-    if (pointer == nullptr) throw failure(std::string("lacks ") + name);
-    return pointer;
+    return library.found(reinterpret_cast<Pointer>(get_proc_address(name)), name);
   }
 };
 
@@ -126,7 +96,7 @@ class EglContext final : public Context {
   }
 
   void make_current() override {
-    if (!try_current()) throw failure("cannot make its context current");
+    if (!try_current()) throw egl_->library.failure("cannot make its context current");
   }
 
   [[nodiscard]] Function resolve(const char* name) const override {
@@ -166,8 +136,8 @@ std::unique_ptr<Context> make_egl_context(EglDevice kind) {
     auto context = std::make_unique<EglContext>(egl, device);
     if (context->try_current()) return context;
   }
-  throw failure(kind == EglDevice::gpu ? "finds no GPU with OpenGL 4.5"
-                                       : "finds no software device with OpenGL 4.5");
+  throw egl->library.failure(kind == EglDevice::gpu ? "finds no GPU with OpenGL 4.5"
+                                                    : "finds no software device with OpenGL 4.5");
 }
 
 }  // namespace sheen::render

@@ -178,8 +178,11 @@ double missing_from(const Samples& b, const Samples& a) {
 
 // Where the z-buffer's word is in doubt it asks the rays, so that both say the same.
 TEST(Replay, ZBufferIsTheDefaultAndGivesTheSamplesOfRays) {
+  const auto z_buffer = [](const core::Mesh& mesh, int threads) {
+    return core::make_raster_visibility(mesh, threads);
+  };
   const Samples by_default = samples_with({});
-  EXPECT_TRUE(by_default == samples_with(core::make_raster_visibility));
+  EXPECT_TRUE(by_default == samples_with(z_buffer));
   EXPECT_TRUE(by_default == samples_with(core::make_ray_visibility));
 }
 

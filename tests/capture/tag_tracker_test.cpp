@@ -204,15 +204,15 @@ TEST_F(TrackedStage, HasNoAnswerForAImageOfAnotherSize) {
   EXPECT_FALSE(tracker_.track(cv::Mat(1, 1, CV_8U, cv::Scalar(0)), pose_));
 }
 
-struct Print {
+struct TrackedPrint {
   const char* family;
   int border_bits;
 };
-void PrintTo(const Print& print, std::ostream* out) {
+void PrintTo(const TrackedPrint& print, std::ostream* out) {
   *out << print.family << ", border " << print.border_bits;
 }
 
-class EveryTrackedFamily : public testing::TestWithParam<Print> {};
+class EveryTrackedFamily : public testing::TestWithParam<TrackedPrint> {};
 
 TEST_P(EveryTrackedFamily, IsFollowed) {
   Board board = make_grid_board(GetParam().family, 3, 2, 0.09, 0.17);
@@ -226,11 +226,13 @@ TEST_P(EveryTrackedFamily, IsFollowed) {
   EXPECT_EQ(pose->tags, 6);
   EXPECT_LE(corner_rms_px(tracker.corners(), true_corners(board, camera, truth)), 0.06);
 }
-INSTANTIATE_TEST_SUITE_P(Print, EveryTrackedFamily,
-                         testing::Values(Print{"tag36h11", 1}, Print{"tag16h5", 1},
-                                         Print{"tagStandard41h12", 1}, Print{"tagCircle21h7", 1},
-                                         Print{"tag36h11", 2}, Print{"DICT_6X6_250", 1},
-                                         Print{"DICT_4X4_50", 2}));
+INSTANTIATE_TEST_SUITE_P(TrackedPrint, EveryTrackedFamily,
+                         testing::Values(TrackedPrint{"tag36h11", 1}, TrackedPrint{"tag16h5", 1},
+                                         TrackedPrint{"tagStandard41h12", 1},
+                                         TrackedPrint{"tagCircle21h7", 1},
+                                         TrackedPrint{"tag36h11", 2},
+                                         TrackedPrint{"DICT_6X6_250", 1},
+                                         TrackedPrint{"DICT_4X4_50", 2}));
 
 }  // namespace
 }  // namespace sheen::capture::test

@@ -117,18 +117,18 @@ TEST_F(Frame, DirectionIsTheUnitVectorInTheFrame) {
   }
 }
 
-CameraModel camera_with(std::array<double, 8> distortion) {
+CameraModel rational_camera(std::array<double, 8> distortion) {
   return CameraModel({640, 480, {611.5, 609.25}, {318.75, 242.5}, distortion});
 }
 
-const std::vector<std::array<double, 8>> kLenses = {{-0.28, 0.07, 1e-3, -5e-4},
+const std::vector<std::array<double, 8>> kDistortions = {{-0.28, 0.07, 1e-3, -5e-4},
                                                     {0.12, -0.25, -7e-4, 4e-4, 0.11},
                                                     {0.5, -0.1, 1e-3, 2e-4, 0.02, 0.6, -0.08, 0.01},
                                                     {}};
 
 TEST_F(Camera, AgreesWithOpenCv) {
-  for (const auto& lens : kLenses) {
-    const CameraModel camera = camera_with(lens);
+  for (const auto& lens : kDistortions) {
+    const CameraModel camera = rational_camera(lens);
     const cv::Matx33d K(611.5, 0, 318.75, 0, 609.25, 242.5, 0, 0, 1);
     const cv::Vec<double, 8> distortion(lens.data());
     std::vector<cv::Point3d> points;
@@ -149,8 +149,8 @@ TEST_F(Camera, AgreesWithOpenCv) {
 }
 
 TEST_F(Camera, ProjectAfterUnprojectIsIdentity) {
-  for (const auto& lens : kLenses) {
-    const CameraModel camera = camera_with(lens);
+  for (const auto& lens : kDistortions) {
+    const CameraModel camera = rational_camera(lens);
     for (int i = 0; i < 1000; ++i) {
       const Eigen::Vector2d pixel(319.5 + 320 * static_cast<double>(uniform()),
                                   239.5 + 240 * static_cast<double>(uniform()));
@@ -168,7 +168,7 @@ TEST_F(Camera, ProjectAfterUnprojectIsIdentity) {
 TEST_F(Camera, RefusesWhatTheLensPolynomialFoldsBack) {
   const double k1 = 0.195;
   const double k2 = -0.609;
-  const CameraModel camera = camera_with({k1, k2});
+  const CameraModel camera = rational_camera({k1, k2});
   // d/dr r (1 + k1 r^2 + k2 r^4) = 0 at 5 k2 r^4 + 3 k1 r^2 + 1 = 0: r = 0.823; searched in steps
   // of 0.002.
   const double fold = std::sqrt((-3 * k1 - std::sqrt(9 * k1 * k1 - 20 * k2)) / (10 * k2));
@@ -184,13 +184,13 @@ TEST_F(Camera, RefusesWhatTheLensPolynomialFoldsBack) {
 
 TEST_F(Camera, UnprojectsNothingWhereTheLensReachesNot) {
   // The largest distorted radius of this lens is 0.823 (1 + 0.195 * 0.677 - 0.609 * 0.458) = 0.702.
-  const CameraModel camera = camera_with({0.195, -0.609});
+  const CameraModel camera = rational_camera({0.195, -0.609});
   EXPECT_TRUE(camera.unproject({318.75 + 611.5 * 0.69, 242.5}));
   EXPECT_FALSE(camera.unproject({318.75 + 611.5 * 0.75, 242.5}));
 }
 
 TEST_F(Camera, SeesNothingBehindItself) {
-  const CameraModel camera = camera_with({});
+  const CameraModel camera = rational_camera({});
   EXPECT_FALSE(camera.project({0, 0, -1}));
   EXPECT_FALSE(camera.project({0, 0, 0}));
   EXPECT_FALSE(camera.project({std::nan(""), 0, 1}));

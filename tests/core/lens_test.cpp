@@ -40,8 +40,7 @@ void for_rays(const CameraModel& camera, double widest_deg, const Use& use) {
 
 TEST(Lens, FisheyeIsOpenCVsFisheye) {
   const std::array<double, 4> k{-0.02, 0.006, -0.003, 0.0004};
-  const CameraModel camera =
-      camera_with(LensKind::fisheye, {k[0], k[1], k[2], k[3], 0, 0, 0, 0});
+  const CameraModel camera = camera_with(LensKind::fisheye, {k[0], k[1], k[2], k[3], 0, 0, 0, 0});
   std::vector<cv::Point3d> points;
   std::vector<Eigen::Vector2d> ours;
   for_rays(camera, 85, [&](const Eigen::Vector2d& ideal) {
@@ -81,8 +80,7 @@ TEST(Lens, DerivativeIsThatOfTheProjection) {
         const Eigen::Vector3d step = h * Eigen::Vector3d::Unit(axis);
         const Eigen::Vector2d slope =
             (*camera.project(point + step) - *camera.project(point - step)) / (2 * h);
-        EXPECT_LT((projected->pixel_by_point.col(axis) - slope).norm(),
-                  1e-6 * (1 + slope.norm()));
+        EXPECT_LT((projected->pixel_by_point.col(axis) - slope).norm(), 1e-6 * (1 + slope.norm()));
       }
     });
   }

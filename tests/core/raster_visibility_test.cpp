@@ -15,6 +15,7 @@
 namespace sheen::core {
 namespace {
 
+using testing::camera_above;
 using testing::sphere;
 using testing::square_grid;
 using testing::together;
@@ -142,13 +143,6 @@ TEST(RasterVisibility, AgreesWithRaysOnScannedMeshes) {
 }
 
 /// A camera at (0, 0, height) that looks down the z axis.
-Eigen::Isometry3d camera_above(double height) {
-  Eigen::Isometry3d camera_from_object = Eigen::Isometry3d::Identity();
-  camera_from_object.linear() = Eigen::Vector3d(1, -1, -1).asDiagonal();
-  camera_from_object.translation() = Eigen::Vector3d(0, 0, height);
-  return camera_from_object;
-}
-
 // From z = 3 a square of half side 0.5 in z = 1 covers half side 0.5 * 3 / 2 = 0.75 of z = 0, to
 // the vertex: what the pixels leave open the rays decide. Both with one square of two triangles,
 // which is bent, and with small ones.
@@ -257,6 +251,7 @@ TEST(SamplingKernels, ProjectWithTheSameBitsOnEveryInstructionSet) {
                               {2.4f, 3.2f, 3.0f},
                               {300, 310},
                               {320, 240},
+                              LensKind::rational,
                               {-0.3f, 0.1f, 2e-3f, -1e-3f, 0, 0, 0, 0},
                               1.5f,
                               2,

@@ -37,7 +37,7 @@ Mesh welded_cube() {
 }
 
 /// The same cube with hard edges: three own vertices and a flat normal per triangle.
-Mesh hard_cube() {
+Mesh cube_of_lone_faces() {
   const Mesh welded = welded_cube();
   Mesh cube;
   for (const auto& triangle : welded.triangles) {
@@ -116,7 +116,7 @@ TEST(RefineMesh, LeavesNoEdgeLongerThanTheLimit) {
 
 TEST(RefineMesh, KeepsAreaVolumeAndClosure) {
   for (const float limit : {1.2f, 0.6f, 0.2f}) {
-    for (const Mesh& cube : {welded_cube(), hard_cube()}) {
+    for (const Mesh& cube : {welded_cube(), cube_of_lone_faces()}) {
       const Mesh refined = refine_mesh(cube, limit, kPlenty);
       ASSERT_GT(refined.triangles.size(), cube.triangles.size());
       // Areas of faces and sixth parts of volumes are sums of dyadic numbers: exact, but for the
@@ -138,7 +138,7 @@ TEST(RefineMesh, KeepsASphereClosedAndItsChordsFlat) {
 }
 
 TEST(RefineMesh, TurnsNoTriangleOver) {
-  const Mesh refined = refine_mesh(hard_cube(), 0.3f, kPlenty);
+  const Mesh refined = refine_mesh(cube_of_lone_faces(), 0.3f, kPlenty);
   for (const auto& t : refined.triangles) {
     // All three vertices carry the face's normal, which is the triangle's own.
     const Eigen::Vector3d normal = doubled_area(refined, t).normalized();
@@ -149,7 +149,7 @@ TEST(RefineMesh, TurnsNoTriangleOver) {
 }
 
 TEST(RefineMesh, HardEdgesStayHardWithEqualPlacesOnBothSides) {
-  const Mesh refined = refine_mesh(hard_cube(), 0.3f, kPlenty);
+  const Mesh refined = refine_mesh(cube_of_lone_faces(), 0.3f, kPlenty);
   std::map<Place, std::set<Place>> normals_at;
   for (std::size_t i = 0; i < refined.positions.size(); ++i) {
     normals_at[place_of(refined.positions[i])].insert(place_of(refined.normals[i]));
@@ -215,7 +215,7 @@ TEST(RefineMesh, StopsAtTheVertexLimitWithTheLongestEdgesHalved) {
     before = refined.positions.size();
   }
   // Cut short within a round: hard edges are split on both sides or on none.
-  const Mesh cube = hard_cube();
+  const Mesh cube = cube_of_lone_faces();
   for (std::size_t most = cube.positions.size(); most < cube.positions.size() + 200; most += 7) {
     EXPECT_TRUE(is_closed(refine_mesh(cube, 0.01f, most)));
   }

@@ -10,15 +10,9 @@
 namespace sheen::core {
 namespace {
 
+using testing::camera_above;
 /// Looks down the z axis from (0, 0, height).
-Eigen::Isometry3d camera_above(double height) {
-  Eigen::Isometry3d camera_from_object = Eigen::Isometry3d::Identity();
-  camera_from_object.linear() = Eigen::Vector3d(1, -1, -1).asDiagonal();
-  camera_from_object.translation() = Eigen::Vector3d(0, 0, height);
-  return camera_from_object;
-}
-
-const CameraModel kCamera({101, 81, {100, 100}, {50, 40}, {}});
+const CameraModel kSmallCamera({101, 81, {100, 100}, {50, 40}, {}});
 
 VertexRejection verdict(const Eigen::Vector3f& position, const Eigen::Vector3f& normal) {
   Mesh mesh;
@@ -26,7 +20,7 @@ VertexRejection verdict(const Eigen::Vector3f& position, const Eigen::Vector3f& 
   mesh.normals.assign(3, normal.normalized());
   mesh.triangles = {{0, 1, 2}};
   VertexView view;
-  project_vertices(surface_points(mesh), kCamera, camera_above(1.0), {}, 1, view);
+  project_vertices(surface_points(mesh), kSmallCamera, camera_above(1.0), {}, 1, view);
   return view.rejection[0];
 }
 
@@ -63,7 +57,7 @@ TEST(VertexView, VerticesWithoutTrianglesNeverBecomeSamples) {
   mesh.positions.emplace_back(0.0f, 0.0f, 0.0f);
   mesh.normals.emplace_back(0.0f, 0.0f, 1.0f);
   VertexView view;
-  project_vertices(surface_points(mesh), kCamera, camera_above(1.0), {}, 1, view);
+  project_vertices(surface_points(mesh), kSmallCamera, camera_above(1.0), {}, 1, view);
   EXPECT_EQ(view.rejection.back(), VertexRejection::back_facing);
   EXPECT_EQ(count_rejections(view)[static_cast<std::size_t>(VertexRejection::none)], 25u);
 }

@@ -3,6 +3,8 @@
 
 #include "core/mesh/mesh.h"
 
+#include <Eigen/Geometry>
+
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -73,6 +75,14 @@ inline Mesh together(const Mesh& first, const Mesh& second) {
     mesh.triangles.emplace_back(triangle[0] + base, triangle[1] + base, triangle[2] + base);
   }
   return mesh;
+}
+
+/// camera_from_object of a camera at z = `height` that looks down, its x along the object's.
+inline Eigen::Isometry3d camera_above(double height) {
+  Eigen::Isometry3d camera_from_object = Eigen::Isometry3d::Identity();
+  camera_from_object.linear() = Eigen::Vector3d(1, -1, -1).asDiagonal();
+  camera_from_object.translation() = Eigen::Vector3d(0, 0, height);
+  return camera_from_object;
 }
 
 }  // namespace sheen::core::testing

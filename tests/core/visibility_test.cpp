@@ -10,6 +10,7 @@
 namespace sheen::core {
 namespace {
 
+using testing::camera_above;
 using testing::sphere;
 using testing::square_grid;
 using testing::together;
@@ -17,13 +18,6 @@ using testing::together;
 const CameraModel kCamera({640, 480, {300, 300}, {320, 240}, {}});
 
 /// A camera at (0, 0, height) that looks down the z axis.
-Eigen::Isometry3d camera_above(double height) {
-  Eigen::Isometry3d camera_from_object = Eigen::Isometry3d::Identity();
-  camera_from_object.linear() = Eigen::Vector3d(1, -1, -1).asDiagonal();
-  camera_from_object.translation() = Eigen::Vector3d(0, 0, height);
-  return camera_from_object;
-}
-
 VertexView seen_from_above(const Mesh& mesh, double height, int threads = 1) {
   VertexView view;
   const Eigen::Isometry3d pose = camera_above(height);

@@ -17,8 +17,8 @@ Eigen::Vector3d steep(double u, double v) {
   return {0.5 + 0.45 * std::sin(9 * u + 4 * v), 0.5 + 0.4 * u, v > 0 ? 0.9 : 0.1};
 }
 
-// What a glossy patch shows: two lobes on a matt ground.
-Eigen::Vector3d glossy(double u, double v) {
+// What a two_lobes patch shows: two lobes on a matt ground.
+Eigen::Vector3d two_lobes(double u, double v) {
   const double z = std::sqrt(std::max(0.0, 1.0 - u * u - v * v));
   const double broad = std::pow(std::max(0.0, -0.5 * u + 0.3 * v + 0.81 * z), 12);
   const double sharp = std::pow(std::max(0.0, 0.6 * u - 0.2 * v + 0.77 * z), 40);
@@ -100,13 +100,13 @@ TEST(DegenerateInput, RidgeFitsStayNearTheRangeOfTheSamples) {
   for (const auto& [name, directions] : hard_cases()) {
     Range samples;
     for (const auto& x : directions) {
-      samples.lowest = std::min(samples.lowest, glossy(x.x(), x.y()).minCoeff());
-      samples.highest = std::max(samples.highest, glossy(x.x(), x.y()).maxCoeff());
+      samples.lowest = std::min(samples.lowest, two_lobes(x.x(), x.y()).minCoeff());
+      samples.highest = std::max(samples.highest, two_lobes(x.x(), x.y()).maxCoeff());
     }
     for (const int terms : {0, 1, 3}) {
       testing::for_all_options(terms, false, [&](const iwls::Options& options) {
         const auto fitter = make_iwls(options);
-        testing::teach(*fitter, directions, glossy);
+        testing::teach(*fitter, directions, two_lobes);
         const Range model = range_of_model(fitter->light_field());
         EXPECT_GT(model.lowest, samples.lowest - 0.1) << name << " " << text_of(options);
         EXPECT_LT(model.highest, samples.highest + 0.1) << name << " " << text_of(options);

@@ -15,7 +15,7 @@ using testing::teach;
 using testing::text_of;
 using testing::worst_error;
 
-Eigen::Vector3d glossy(double u, double v) {
+Eigen::Vector3d one_lobe(double u, double v) {
   const double z = std::sqrt(std::max(0.0, 1.0 - u * u - v * v));
   const double lobe = std::pow(std::max(0.0, 0.5 * u + 0.3 * v + 0.81 * z), 12);
   return {0.3 + 0.5 * lobe, 0.2 + 0.1 * u, 0.4 - 0.2 * v * v};
@@ -59,12 +59,12 @@ TEST(IwlsLaws, RidgeFitsComeCloseAndMoreTermsCloser) {
     std::vector<double> errors;
     for (const int terms : {1, 3, 6}) {
       const auto fitter = make_iwls({construction, iwls::Layout::grid, 16, terms, false});
-      teach(*fitter, scattered(500, 23), glossy);
+      teach(*fitter, scattered(500, 23), one_lobe);
       double sum = 0;
       const auto directions = scattered(500, 24);
       for (const auto& x : directions) {
         const auto value = testing::colour_of(fitter->light_field(), 0, x.cast<float>());
-        sum += (value.cast<double>() - glossy(x.x(), x.y())).squaredNorm() / 3;
+        sum += (value.cast<double>() - one_lobe(x.x(), x.y())).squaredNorm() / 3;
       }
       errors.push_back(std::sqrt(sum / static_cast<double>(directions.size())));
     }
@@ -77,13 +77,13 @@ TEST(IwlsLaws, RidgeFitsComeCloseAndMoreTermsCloser) {
 TEST(IwlsLaws, GainAndOffsetPassThrough) {
   const double gain = 0.5, offset = 0.25;
   const auto mapped = [&](double u, double v) -> Eigen::Vector3d {
-    return gain * glossy(u, v) + Eigen::Vector3d::Constant(offset);
+    return gain * one_lobe(u, v) + Eigen::Vector3d::Constant(offset);
   };
   for (const bool faithful : {false, true}) {
     for_all_options(3, faithful, [&](const iwls::Options& options) {
       const auto plain = make_iwls(options);
       const auto changed = make_iwls(options);
-      teach(*plain, scattered(80, 25), glossy);
+      teach(*plain, scattered(80, 25), one_lobe);
       teach(*changed, scattered(80, 25), mapped);
       for (const auto& x : testing::disc_grid(8, 16)) {
         const Eigen::Vector3f expected =
@@ -105,10 +105,10 @@ TEST(IwlsLaws, TheOrderOfViewsDoesNotMatter) {
     for_all_options(3, faithful, [&](const iwls::Options& options) {
       auto directions = scattered(70, 26);
       const auto forwards = make_iwls(options);
-      teach(*forwards, directions, glossy);
+      teach(*forwards, directions, one_lobe);
       std::reverse(directions.begin(), directions.end());
       const auto backwards = make_iwls(options);
-      teach(*backwards, directions, glossy);
+      teach(*backwards, directions, one_lobe);
       const auto& a = dynamic_cast<const iwls::LightFieldModel&>(forwards->light_field());
       const auto& b = dynamic_cast<const iwls::LightFieldModel&>(backwards->light_field());
       for (std::size_t i = 0; i < a.coefficients().size(); ++i) {

@@ -13,7 +13,7 @@ using iwls::Layout;
 using testing::make_iwls;
 using testing::scattered;
 
-Eigen::Vector3d wavy(double u, double v) {
+Eigen::Vector3d rippled(double u, double v) {
   return {0.5 + 0.3 * std::sin(3 * u), 0.5 + 0.2 * std::cos(2 * v), 0.3 + 0.2 * u * v};
 }
 
@@ -42,8 +42,8 @@ TEST(Quadtree, EqualsListsOfSamplesFittedAnew) {
           const auto directions = scattered(300, 34);
           for (std::size_t i = 0; i < directions.size(); ++i) {
             const auto& x = directions[i];
-            tree->integrate(testing::one_sample(0, x, wavy(x.x(), x.y())));
-            reference.add(x.cast<float>(), wavy(x.x(), x.y()).cast<float>());
+            tree->integrate(testing::one_sample(0, x, rippled(x.x(), x.y())));
+            reference.add(x.cast<float>(), rippled(x.x(), x.y()).cast<float>());
             if (i != 0 && i != 2 && i != 20 && i != 80 && i + 1 != directions.size()) continue;
             tree->finish();
             reference.fit();
@@ -68,8 +68,8 @@ TEST(Quadtree, FullySplitEqualsBatch) {
     for (const int centers : {16, 64}) {
       const auto tree = make_iwls({Construction::quadtree, layout, centers, 3, true});
       const auto batch = make_iwls({Construction::batch, layout, centers, 3, true});
-      testing::teach(*tree, scattered(1000, 31), wavy);
-      testing::teach(*batch, scattered(1000, 31), wavy);
+      testing::teach(*tree, scattered(1000, 31), rippled);
+      testing::teach(*batch, scattered(1000, 31), rippled);
       EXPECT_EQ(bits_of(*tree), bits_of(*batch));
     }
   }
@@ -80,11 +80,11 @@ TEST(Quadtree, FullySplitEqualsBatch) {
 TEST(Quadtree, UnsplitRootIsOnePlaneEverywhere) {
   const auto directions = scattered(12, 32);
   const auto tree = make_iwls({Construction::quadtree, Layout::grid, 16, 3, true});
-  testing::teach(*tree, directions, wavy);
+  testing::teach(*tree, directions, rippled);
   iwls::NormalEquations<3> sums;
   const iwls::Node root{0, 0, std::sqrt(2.0)};
   for (const auto& x : directions) {
-    const Eigen::Vector3d c = wavy(x.x(), x.y());
+    const Eigen::Vector3d c = rippled(x.x(), x.y());
     add_if_covered(root, Sample{x.x(), x.y(), {c.x(), c.y(), c.z()}}, sums);
   }
   iwls::FitRule rule;
@@ -108,10 +108,10 @@ TEST(Quadtree, SplitsAboveFourTimesTheRank) {
   const auto tree = make_iwls({Construction::quadtree, Layout::grid, 16, 3, true});
   for (std::size_t i = 0; i < 12; ++i) {
     tree->integrate(
-        testing::one_sample(0, directions[i], wavy(directions[i].x(), directions[i].y())));
+        testing::one_sample(0, directions[i], rippled(directions[i].x(), directions[i].y())));
     EXPECT_EQ(tree->statistics().fits, i + 1);
   }
-  tree->integrate(testing::one_sample(0, directions[12], wavy(0, 0)));
+  tree->integrate(testing::one_sample(0, directions[12], rippled(0, 0)));
   EXPECT_EQ(tree->statistics().fits, 12u + 4u);
 }
 
@@ -124,7 +124,7 @@ TEST(Quadtree, CountsOfFitsAreThoseOfThePaper) {
     for (unsigned seed = 0; seed < 20; ++seed) {
       const auto fitter = make_iwls({construction, Layout::grid, 16, 3, true});
       for (const auto& x : scattered(views, 300 + seed)) {
-        fitter->integrate(testing::one_sample(0, x, wavy(x.x(), x.y())));
+        fitter->integrate(testing::one_sample(0, x, rippled(x.x(), x.y())));
       }
       const FitStatistics statistics = fitter->statistics();
       EXPECT_EQ(statistics.patch_views, views);

@@ -18,18 +18,18 @@ using testing::isolated;
 using testing::one_sample;
 using testing::scattered;
 
-std::unique_ptr<PatchFitter> make_sparse(std::size_t patches, const Options& options = {}) {
+std::unique_ptr<PatchFitter> make_live(std::size_t patches, const Options& options = {}) {
   return make_sparse_fitter(isolated(patches), options, 1);
 }
 
-Eigen::Vector3d highlight(double u, double v) {
+Eigen::Vector3d broad_highlight(double u, double v) {
   const double squared = (u - 0.3) * (u - 0.3) + (v + 0.2) * (v + 0.2);
   return Eigen::Vector3d(0.3, 0.25, 0.2) +
          Eigen::Vector3d::Constant(0.5 * std::exp(-squared / 0.1));
 }
 
 TEST(SparseLive, FirstViewIsShownAtOnce) {
-  const auto fitter = make_sparse(2);
+  const auto fitter = make_live(2);
   fitter->integrate(one_sample(0, {0.2, 0.1}, {0.5, 0.25, 0.75}));
   EXPECT_EQ(colour_of(fitter->light_field(), 0, {0, 0}), Eigen::Vector3f(0.5f, 0.25f, 0.75f));
   EXPECT_EQ(fitter->light_field().observed()[0], 1);
@@ -37,17 +37,18 @@ TEST(SparseLive, FirstViewIsShownAtOnce) {
 }
 
 TEST(SparseLive, HighlightIsFollowedBeforeTheEnd) {
-  const auto fitter = make_sparse(1);
+  const auto fitter = make_live(1);
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   const auto directions = scattered(96, 1);
   for (const Eigen::Vector2d& x : directions) {
-    fitter->integrate(one_sample(0, x, highlight(x.x(), x.y())));
-    mean += highlight(x.x(), x.y()) / 96.0;
+    fitter->integrate(one_sample(0, x, broad_highlight(x.x(), x.y())));
+    mean += broad_highlight(x.x(), x.y()) / 96.0;
   }
   double squared = 0;
   double squared_of_mean = 0;
   for (const Eigen::Vector2f& x : disc_grid()) {
-    const Eigen::Vector3d truth = highlight(static_cast<double>(x.x()), static_cast<double>(x.y()));
+    const Eigen::Vector3d truth =
+        broad_highlight(static_cast<double>(x.x()), static_cast<double>(x.y()));
     squared += (colour_of(fitter->light_field(), 0, x).cast<double>() - truth).squaredNorm();
     squared_of_mean += (mean - truth).squaredNorm();
   }
@@ -61,7 +62,7 @@ TEST(SparseLive, WorkOfAViewIsBounded) {
   // systems: the patch as it is, with a linear base, with a RBF more, with one less, and the
   // outcome.
   constexpr std::uint32_t patches = 4800;
-  const auto fitter = make_sparse(patches);
+  const auto fitter = make_live(patches);
   std::mt19937 random(2);
   std::size_t before = 0;
   for (const Eigen::Vector2d& x : scattered(12, 3)) {
@@ -85,8 +86,8 @@ TEST(SparseLive, ToleranceIsTwiceTheNoiseUnlessGiven) {
   std::mt19937 random(seed);
   std::normal_distribution<double> noise(0.0, 0.01);
   constexpr std::uint32_t patches = 100;
-  const auto estimated = make_sparse(patches);
-  const auto given = make_sparse(patches, {.tolerance = 0.03f});
+  const auto estimated = make_live(patches);
+  const auto given = make_live(patches, {.tolerance = 0.03f});
   EXPECT_EQ(estimated->statistics().tolerance, kToleranceOfUnknownNoise);
   for (int view = 0; view < 30; ++view) {
     core::SampleBatch batch;

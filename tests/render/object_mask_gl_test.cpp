@@ -14,15 +14,15 @@ namespace {
 
 using fitting::iwls::Layout;
 
-constexpr int kWidth = 320;
-constexpr int kHeight = 240;
+constexpr int kMaskWidth = 320;
+constexpr int kMaskHeight = 240;
 
 TEST(ObjectMask, EqualsTheMaskOfTheMeshsOwnRenderer) {
   const auto context = make_osmesa_context();
   const std::vector<core::Mesh> meshes{
       testing::sphere(0.1f, 20), testing::torus_knot(0.2f, 240, 20), testing::tetrahedron(0.2f)};
-  const std::vector<core::CameraModel> cameras{testing::plain_camera(kWidth, kHeight),
-                                               testing::distorted_camera(kWidth, kHeight)};
+  const std::vector<core::CameraModel> cameras{testing::plain_camera(kMaskWidth, kMaskHeight),
+                                               testing::distorted_camera(kMaskWidth, kMaskHeight)};
   for (const core::Mesh& mesh : meshes) {
     // Some patches are unseen: what nobody has seen is there all the same.
     const auto model = testing::random_iwls(Layout::disk, 16, 3, mesh.positions.size(), 4);
@@ -36,12 +36,12 @@ TEST(ObjectMask, EqualsTheMaskOfTheMeshsOwnRenderer) {
         const auto pose = testing::looking_at_origin(from, 0.45);
         const cv::Mat mask = object.seen_by(camera, pose);
         ASSERT_EQ(mask.type(), CV_8UC1);
-        ASSERT_EQ(mask.size(), cv::Size(kWidth, kHeight));
+        ASSERT_EQ(mask.size(), cv::Size(kMaskWidth, kMaskHeight));
         EXPECT_EQ(cv::countNonZero(mask != renderer->render(camera, pose).mask), 0);
         // Rays decide pixels whose centres an edge passes within rounding for themselves.
         EXPECT_LE(cv::countNonZero(mask != reference->render(camera, pose).mask), 10);
         EXPECT_GT(cv::countNonZero(mask), 2000);
-        EXPECT_EQ(cv::countNonZero(mask) + cv::countNonZero(mask == 0), kWidth * kHeight);
+        EXPECT_EQ(cv::countNonZero(mask) + cv::countNonZero(mask == 0), kMaskWidth * kMaskHeight);
         EXPECT_EQ(cv::countNonZero(mask == 255), cv::countNonZero(mask));
       }
     }
