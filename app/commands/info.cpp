@@ -53,7 +53,9 @@ nlohmann::ordered_json describe_model(const std::filesystem::path& path) {
     document["patches"] = patches->patch_count();
     document["patches_observed"] = std::count(observed.begin(), observed.end(), std::uint8_t{1});
     if (const auto* const texture = patches->texture_between_patches()) {
-      document["texture_texels"] = {texture->atlas().width, texture->atlas().height};
+      document["texture_size"] = {texture->atlas().width, texture->atlas().height};
+      document["texels_stored"] = texture->texel_count().stored;
+      document["texels_offered"] = texture->texel_count().offered;
     }
     document["coefficients_per_patch"] =
         static_cast<double>(light_field.coefficient_count()) /

@@ -5,6 +5,7 @@
 #include "core/mesh/bounds.h"
 #include "core/mesh/neighbours.h"
 #include "fitting/detail/detail_light_field.h"
+#include "fitting/detail/simplify_texture.h"
 #include "fitting/detail/texel_means.h"
 #include "fitting/detail/texture_solver.h"
 #include "fitting/detail/texture_sums.h"
@@ -58,6 +59,8 @@ class DetailFitter final : public Fitter {
  private:
   void store_offset(std::uint32_t patch);
   [[nodiscard]] Planes starting_texture() const;
+  [[nodiscard]] std::vector<float> texel_weights() const;
+  [[nodiscard]] float noise() const;
   void store_texture(const Planes& planes);
 
   const core::Mesh& mesh_;
@@ -104,6 +107,8 @@ const ModelUpdate& DetailFitter::finish() {
   Planes planes = starting_texture();
   solve_texture(texture_sums_.texels(), static_cast<std::size_t>(model_.texture().atlas().width),
                 threads_, planes);
+  model_.texture().set_texel_count(simplify_texture(model_.texture().atlas(), texel_weights(),
+                                                    noise(), threads_, planes));
   store_texture(planes);
   update_.elements.resize(model_.element_count());
   std::iota(update_.elements.begin(), update_.elements.end(), 0u);
@@ -133,6 +138,22 @@ Planes DetailFitter::starting_texture() const {
     }
   }
   return planes;
+}
+
+/// As simplify_texture wants them.
+std::vector<float> DetailFitter::texel_weights() const {
+  std::vector<float> weights(texel_means_.texels().size(), -1.0f);
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    for (const SurfaceTexel& texel : texel_means_.surface().of(t)) {
+      weights[texel.texel_idx] = texel_means_.texels()[texel.texel_idx].observations();
+    }
+  }
+  return weights;
+}
+
+/// Deviation of one observation, of 255: the patches' tolerance is twice it.
+float DetailFitter::noise() const {
+  return 255.0f * 0.5f * patches_->statistics().tolerance.value_or(sparse::kToleranceOfUnknownNoise);
 }
 
 /// Texels that no reading touches keep their grey.

@@ -43,7 +43,8 @@ Eigen::Vector3f DetailLightField::mean_colour(std::size_t patch_idx) const {
 }
 
 std::size_t DetailLightField::coefficient_count() const {
-  std::size_t count = 3 * texture_.texels().size();
+  const TexelCount& texels = texture_.texel_count();
+  std::size_t count = 3 * (texels.offered > 0 ? texels.stored : texture_.texels().size());
   for (std::size_t patch = 0; patch < patch_count(); ++patch) {
     const sparse::PatchModel offset = offsets_.patch(patch);
     if (offset.term_count() > 1) count += 3 * offset.term_count() + offset.rbf_count;

@@ -39,7 +39,7 @@ class DetailLightField final : public PatchLightField {
   [[nodiscard]] const std::vector<std::uint8_t>& observed() const override {
     return offsets_.observed();
   }
-  /// Three per texel, and those of the patches that differ from zero.
+  /// Three per colour of the texture, and those of the patches that differ from zero.
   [[nodiscard]] std::size_t coefficient_count() const override;
   /// Patches, then pages of the texture.
   [[nodiscard]] std::size_t element_count() const override {

@@ -21,6 +21,8 @@ struct alignas(16) TexelMean {
   std::uint32_t weight = 0;                ///< sum of q, in 64ths
   std::array<std::uint32_t, 3> colour{};   ///< sum of q times the colour, RGB, in 1020ths
 
+  /// Sum of q.
+  [[nodiscard]] float observations() const { return static_cast<float>(weight) / 64.0f; }
   /// The mean, 0 to 255; weight > 0.
   [[nodiscard]] float mean(std::size_t channel) const {
     return static_cast<float>(colour[channel]) / (4.0f * static_cast<float>(weight));

@@ -3,28 +3,26 @@
 
 #include "core/concurrency/parallel_for.h"
 
-#include <cstdlib>
 #include <numeric>
 
 namespace sheen::fitting::detail {
 namespace {
 
-float env(const char* name, float value) {
-  const char* text = std::getenv(name);
-  return text ? static_cast<float>(std::atof(text)) : value;
-}
+/// Pull towards the given texture: as strong as a pixel that sees the texel's middle frontally.
+constexpr float kLambda = 1.0f;
+/// More bring nothing on views that were not seen.
+constexpr int kSteps = 4;
 
 /// Units of the sums in the matrix: a pixel that sees the middle of a texel frontally adds 1.
 constexpr float kUnit = 1.0f / (kCosineUnits * kReadingUnits * kReadingUnits);
 
-/// The normal equations of one channel, matrix + lambda.
+/// The normal equations of a texture, those of a texel a row.
 class System {
  public:
-  System(std::span<const TexelSums> texels, std::size_t width, float lambda, int threads)
+  System(std::span<const TexelSums> texels, std::size_t width, int threads)
       : texels_(texels),
         width_(width),
         height_(texels.size() / width),
-        lambda_(lambda),
         threads_(threads),
         diagonal_(texels.size(), 0.0f) {
     for_rows([&](std::size_t begin, std::size_t end) {
@@ -87,18 +85,14 @@ class System {
     });
   }
 
-  [[nodiscard]] float lambda() const { return lambda_; }
-
  private:
   std::span<const TexelSums> texels_;
   std::size_t width_, height_;
-  float lambda_;
   int threads_;
   std::vector<float> diagonal_;
 };
 
 void solve_channel(const System& system, std::size_t channel, std::vector<float>& texture) {
-  const int steps = static_cast<int>(env("CG", 4));
   std::vector<float> r(texture.size(), 0.0f);
   system.residual(texture, channel, r);
   std::vector<float> p = r;
@@ -111,10 +105,10 @@ void solve_channel(const System& system, std::size_t channel, std::vector<float>
     });
   };
   double squared = dot(r, r);
-  for (int step = 0; step < steps && squared > 0; ++step) {
+  for (int step = 0; step < kSteps && squared > 0; ++step) {
     system.for_rows([&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        Ap[i] = system.product(p, i) + system.lambda() * p[i];
+        Ap[i] = system.product(p, i) + kLambda * p[i];
       }
     });
     const auto alpha = static_cast<float>(squared / dot(p, Ap));
@@ -152,8 +146,7 @@ Planes mean_texture(std::span<const TexelSums> texels) {
 void solve_texture(std::span<const TexelSums> texels, std::size_t width, int threads,
                    Planes& texture) {
   if (width < 3 || texels.size() / width < 3) return;
-  const float lambda = env("LAMBDA", 1.0f);
-  const System system(texels, width, lambda, threads);
+  const System system(texels, width, threads);
   for (std::size_t channel = 0; channel < 3; ++channel) {
     solve_channel(system, channel, texture[channel]);
   }

@@ -59,8 +59,7 @@ std::size_t add_places(const std::vector<core::AtlasPoint>& places, DocumentBuil
   return accessor;
 }
 
-/// `attributes` are those that a viewer colours it with.
-void add_mesh(const core::Mesh& mesh, json attributes, DocumentBuilder& builder) {
+json add_vertices(const core::Mesh& mesh, DocumentBuilder& builder) {
   const std::size_t vertices = mesh.positions.size();
   const std::size_t position =
       builder.add_accessor(bytes_of(mesh.positions), kArrayBuffer, kFloat, "VEC3", vertices);
@@ -72,9 +71,12 @@ void add_mesh(const core::Mesh& mesh, json attributes, DocumentBuilder& builder)
   }
   builder.document["accessors"][position]["min"] = as_json(lowest);
   builder.document["accessors"][position]["max"] = as_json(highest);
-  attributes["POSITION"] = position;
-  attributes["NORMAL"] =
+  const std::size_t normal =
       builder.add_accessor(bytes_of(mesh.normals), kArrayBuffer, kFloat, "VEC3", vertices);
+  return {{"POSITION", position}, {"NORMAL", normal}};
+}
+
+void add_triangles(const core::Mesh& mesh, const json& attributes, DocumentBuilder& builder) {
   const std::size_t indices =
       builder.add_accessor(bytes_of(mesh.triangles), kElementArrayBuffer, kUnsignedInt, "SCALAR",
                            3 * mesh.triangles.size());
@@ -86,8 +88,9 @@ void add_mesh(const core::Mesh& mesh, json attributes, DocumentBuilder& builder)
 /// What any glTF viewer shows: the mesh with its mean colours, unlit.
 void add_coloured_mesh(const core::Mesh& mesh, const LightField& light_field,
                        DocumentBuilder& builder) {
-  const json colours = {{"COLOR_0", add_colours(light_field.vertex_colours(mesh), builder)}};
-  add_mesh(mesh, colours, builder);
+  json attributes = add_vertices(mesh, builder);
+  attributes["COLOR_0"] = add_colours(light_field.vertex_colours(mesh), builder);
+  add_triangles(mesh, attributes, builder);
 }
 
 core::Mesh mesh_of(const core::Mesh& mesh, const core::AtlasVertices& split) {
@@ -105,8 +108,10 @@ core::Mesh mesh_of(const core::Mesh& mesh, const core::AtlasVertices& split) {
 void add_textured_mesh(const core::Mesh& mesh, const SurfaceTexture& texture,
                        DocumentBuilder& builder) {
   const core::AtlasVertices split = core::split_at_seams(mesh, texture.atlas());
-  const json places = {{"TEXCOORD_0", add_places(split.place, builder)}};
-  add_mesh(mesh_of(mesh, split), places, builder);
+  const core::Mesh drawn = mesh_of(mesh, split);
+  json attributes = add_vertices(drawn, builder);
+  attributes["TEXCOORD_0"] = add_places(split.place, builder);
+  add_triangles(drawn, attributes, builder);
   json& document = builder.document;
   const std::size_t image = builder.add_view(bytes_of(encode_texture(texture)));
   document["images"] = {{{"bufferView", image}, {"mimeType", "image/png"}}};

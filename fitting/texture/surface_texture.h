@@ -16,6 +16,11 @@ namespace sheen::fitting {
 /// A texel as it is stored: display-referred sRGB, 8 bits a channel, R, G, B.
 using Texel = std::array<std::uint8_t, 3>;
 
+/// What a texture takes: colours that say something of their own, of so many that readings touch.
+struct TexelCount {
+  std::size_t stored = 0, offered = 0;
+};
+
 /// Colours over a surface, finer than its vertices.
 class SurfaceTexture {
  public:
@@ -30,6 +35,10 @@ class SurfaceTexture {
   /// Row by row, atlas().width texels each.
   [[nodiscard]] const std::vector<Texel>& texels() const { return texels_; }
   [[nodiscard]] std::vector<Texel>& texels() { return texels_; }
+
+  /// Zeros as long as nobody has counted.
+  [[nodiscard]] const TexelCount& texel_count() const { return texel_count_; }
+  void set_texel_count(const TexelCount& count) { texel_count_ = count; }
 
   [[nodiscard]] std::size_t page_count() const;
   /// The page that holds a texel.
@@ -56,6 +65,7 @@ class SurfaceTexture {
   core::Atlas atlas_;
   std::vector<Texel> texels_;
   std::size_t pages_per_row_;
+  TexelCount texel_count_;
 };
 
 }  // namespace sheen::fitting

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // A texture and patches, fitted to photographs of known surfaces.
 #include "fitting/detail/detail_light_field.h"
-#include "fitting/model_file/texture_image.h"
+#include "fitting/model_file/model_file.h"
 #include "fitting/undo/undoable_fitter.h"
 #include "tests/fitting/photographs_for_tests.h"
 #include "tests/fitting/samples_for_tests.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -119,8 +120,8 @@ TEST(Detail, FinishMayBeCalledInBetween) {
   EXPECT_EQ(model_of(*twice).texture().texels(), model_of(*once).texture().texels());
 }
 
-// A surface of one colour, without noise: all means are that colour to a step of 1/255, and no patch
-// has anything to say about directions.
+// A surface of one colour, without noise: one texel per chart, of that colour, and no patch has
+// anything to say about directions.
 TEST(Detail, AConstantObjectIsOneColour) {
   const Photographs views(render::testing::sphere(0.1f, 12), 12,
                           [](const auto&, const auto&) { return Eigen::Vector3f(0.2f, 0.4f, 0.6f); });
@@ -132,6 +133,8 @@ TEST(Detail, AConstantObjectIsOneColour) {
     EXPECT_EQ(model.offsets().patch(patch).term_count(), 1u);
     EXPECT_EQ(model.offsets().colour(patch, {0.3f, 0.1f}), Eigen::Vector3f::Zero());
   }
+  EXPECT_LE(model.texture().texel_count().stored, model.texture().atlas().charts.size());
+  EXPECT_GT(model.texture().texel_count().offered, 1000u);
   for (const Texel& texel : model.texture().texels()) {
     const bool is_colour = texel == Texel{51, 102, 153};
     const bool is_unused = texel == Texel{128, 128, 128};
@@ -219,6 +222,30 @@ TEST(Detail, UnseenFacesTakeTheirNeighboursColour) {
     const Eigen::Vector3f found =
         model_of(*fitter).texture().at(t, Eigen::Vector3f::Constant(1.0f / 3.0f));
     EXPECT_LT((found - colour).cwiseAbs().maxCoeff(), 2.0f / 255) << t;
+  }
+}
+
+TEST(Detail, TheModelFileGivesBackEveryBit) {
+  const tests::TemporaryFolder folder;
+  const Photographs& views = glossy_sphere();
+  const auto fitter = make(views.mesh());
+  views.show(first(12), *fitter);
+  for (const bool finished : {false, true}) {
+    if (finished) fitter->finish();
+    write_model(folder / "a.glb", views.mesh(), fitter->light_field());
+    const Model model = read_model(folder / "a.glb");
+    const auto& written = model_of(*fitter);
+    const auto& read = dynamic_cast<const DetailLightField&>(*model.light_field);
+    EXPECT_EQ(model.mesh.positions, views.mesh().positions);
+    EXPECT_EQ(model.mesh.normals, views.mesh().normals);
+    EXPECT_EQ(model.mesh.triangles, views.mesh().triangles);
+    EXPECT_EQ(read.texture().texels(), written.texture().texels());
+    EXPECT_EQ(read.texture().texel_count().stored, written.texture().texel_count().stored);
+    EXPECT_EQ(read.texture().atlas().width, written.texture().atlas().width);
+    EXPECT_EQ(read.texture().atlas().corners, written.texture().atlas().corners);
+    EXPECT_EQ(testing::bytes_of(read), testing::bytes_of(written));
+    write_model(folder / "b.glb", model.mesh, *model.light_field);
+    EXPECT_TRUE(tests::read_file(folder / "a.glb") == tests::read_file(folder / "b.glb"));
   }
 }
 
