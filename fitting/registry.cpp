@@ -16,12 +16,9 @@ namespace {
 /// One line per representation; the first is the default.
 std::vector<const Descriptor*>& registry() {
   static std::vector<const Descriptor*> all{
-      &sparse::kDescriptor,
-      &detail::kDescriptor,
-      &iwls::kDescriptor,
-      &spherical_harmonics::kDescriptor,
-      &mean::kDescriptor,
-      &nearest_views::kDescriptor,
+      &sparse::kDescriptor, &detail::kDescriptor,
+      &iwls::kDescriptor,   &spherical_harmonics::kDescriptor,
+      &mean::kDescriptor,   &nearest_views::kDescriptor,
   };
   return all;
 }

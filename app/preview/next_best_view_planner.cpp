@@ -26,8 +26,9 @@ constexpr int kRestPerLook = 2;  // nothing can be said before all places have b
 // Root mean square error in directions seen before that paints a patch in full colour, sRGB.
 constexpr float kFullMisfit = 0.12f;
 
-/// Scores in [0, 1] of the patches that were seen. Views: deviation to expect from missing views, as
-/// a share of what a patch that nobody has seen has. Misfit: deviation in directions that were seen.
+/// Scores in [0, 1] of the patches that were seen. Views: deviation to expect from missing views,
+/// as a share of what a patch that nobody has seen has. Misfit: deviation in directions that were
+/// seen.
 PatchScores scores_of(const guidance::ViewUtility& utility,
                       const std::vector<float>& unseen_direction_error,
                       const std::vector<guidance::DirectionCells>& reachable) {

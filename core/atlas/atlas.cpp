@@ -57,8 +57,8 @@ Atlas make_atlas(const Mesh& mesh, float texel_m, std::size_t most_texels) {
   for (const float area_m2 : triangle_shapes(mesh).area_m2) {
     surface_m2 += static_cast<double>(area_m2);
   }
-  texel_m = std::max(
-      texel_m, static_cast<float>(std::sqrt(surface_m2 / static_cast<double>(most_texels))));
+  texel_m = std::max(texel_m,
+                     static_cast<float>(std::sqrt(surface_m2 / static_cast<double>(most_texels))));
   // Area and gutters do not grow alike, so a second and a third step may be needed.
   constexpr int most_steps = 12;
   for (int step = 0;; ++step) {

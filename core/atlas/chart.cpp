@@ -131,8 +131,7 @@ Plane ChartMaker::plane_of(const std::vector<std::uint32_t>& region) const {
   const bool upright = box.size.width < box.size.height;
   const float angle = (box.angle + (upright ? 90.0f : 0.0f)) * static_cast<float>(CV_PI / 180);
   Eigen::Matrix3f turn = Eigen::Matrix3f::Identity();
-  turn.topLeftCorner<2, 2>() << std::cos(angle), std::sin(angle), -std::sin(angle),
-      std::cos(angle);
+  turn.topLeftCorner<2, 2>() << std::cos(angle), std::sin(angle), -std::sin(angle), std::cos(angle);
 
   // Scale.
   const float enlarged = projected > 0.0f ? std::sqrt(surface / projected) : 1.0f;

@@ -21,8 +21,8 @@ class Coverage {
   explicit Coverage(const Eigen::AlignedBox2f& bounds);
 
   /// Adds a triangle (counter-clockwise), unless it covers a centre of a texel that another one
-  /// covers, or comes within a texel of a part of the surface that lies far above or below it. Lines
-  /// and points always fit.
+  /// covers, or comes within a texel of a part of the surface that lies far above or below it.
+  /// Lines and points always fit.
   bool add(const FlatTriangle& triangle);
 
  private:

@@ -34,8 +34,7 @@ void settle(const TriangleShapes& shapes, Flattening& flat) {
     std::vector<Eigen::Vector3d> sums(flat.directions.size(), Eigen::Vector3d::Zero());
     for (std::size_t t = 0; t < shapes.normal.size(); ++t) {
       flat.of_triangle[t] = nearest(flat.directions, shapes.normal[t]);
-      sums[flat.of_triangle[t]] +=
-          (shapes.area_m2[t] * shapes.normal[t]).template cast<double>();
+      sums[flat.of_triangle[t]] += (shapes.area_m2[t] * shapes.normal[t]).template cast<double>();
     }
     for (std::size_t d = 0; d < sums.size(); ++d) {
       const double length = sums[d].norm();
@@ -93,9 +92,8 @@ class Costs {
   [[nodiscard]] float side(std::size_t t, std::size_t i) const {
     const auto corner = static_cast<Eigen::Index>(i);
     const auto& triangle = mesh_.triangles[t];
-    return boundary_m_ * (mesh_.positions[triangle[corner]] -
-                          mesh_.positions[triangle[(corner + 1) % 3]])
-                             .norm();
+    return boundary_m_ *
+           (mesh_.positions[triangle[corner]] - mesh_.positions[triangle[(corner + 1) % 3]]).norm();
   }
   [[nodiscard]] const Sides& neighbours(std::size_t t) const { return neighbours_[t]; }
   [[nodiscard]] float area_m2(std::size_t t) const { return shapes_.area_m2[t]; }
@@ -196,9 +194,8 @@ void improve_regions(const Costs& costs, Flattening& flat) {
   for (int round = 0; round < most_rounds; ++round) {
     auto regions = regions_of(costs, flat);
     const auto area = [&](const std::vector<std::uint32_t>& region) {
-      return std::accumulate(region.begin(), region.end(), 0.0f, [&](float sum, std::uint32_t t) {
-        return sum + costs.area_m2(t);
-      });
+      return std::accumulate(region.begin(), region.end(), 0.0f,
+                             [&](float sum, std::uint32_t t) { return sum + costs.area_m2(t); });
     };
     std::vector<std::pair<float, std::size_t>> order;
     for (std::size_t r = 0; r < regions.size(); ++r) order.emplace_back(area(regions[r]), r);

@@ -52,8 +52,8 @@ std::vector<std::array<std::uint32_t, 3>> triangle_neighbours(const Mesh& mesh) 
   });
 
   // Join the first two of each edge.
-  std::vector<std::array<std::uint32_t, 3>> neighbours(
-      mesh.triangles.size(), {kNoTriangle, kNoTriangle, kNoTriangle});
+  std::vector<std::array<std::uint32_t, 3>> neighbours(mesh.triangles.size(),
+                                                       {kNoTriangle, kNoTriangle, kNoTriangle});
   for (std::size_t begin = 0; begin < sides.size();) {
     std::size_t end = begin + 1;
     while (end < sides.size() && sides[end].key == sides[begin].key) ++end;

@@ -43,8 +43,8 @@ class DetailFitter final : public Fitter {
   DetailFitter(const core::Mesh& mesh, const Options& options, int threads)
       : mesh_(mesh),
         threads_(threads),
-        patches_(sparse::make_sparse_fitter(core::vertex_neighbours(mesh), options.patches,
-                                            threads)),
+        patches_(
+            sparse::make_sparse_fitter(core::vertex_neighbours(mesh), options.patches, threads)),
         model_(mesh, atlas_of(mesh, options)),
         raster_(mesh, threads),
         texel_means_(mesh, model_.texture().atlas(), threads),
@@ -107,8 +107,8 @@ const ModelUpdate& DetailFitter::finish() {
   Planes planes = starting_texture();
   solve_texture(texture_sums_.texels(), static_cast<std::size_t>(model_.texture().atlas().width),
                 threads_, planes);
-  model_.texture().set_texel_count(simplify_texture(model_.texture().atlas(), texel_weights(),
-                                                    noise(), threads_, planes));
+  model_.texture().set_texel_count(
+      simplify_texture(model_.texture().atlas(), texel_weights(), noise(), threads_, planes));
   store_texture(planes);
   update_.elements.resize(model_.element_count());
   std::iota(update_.elements.begin(), update_.elements.end(), 0u);
@@ -153,7 +153,8 @@ std::vector<float> DetailFitter::texel_weights() const {
 
 /// Deviation of one observation, of 255: the patches' tolerance is twice it.
 float DetailFitter::noise() const {
-  return 255.0f * 0.5f * patches_->statistics().tolerance.value_or(sparse::kToleranceOfUnknownNoise);
+  return 255.0f * 0.5f *
+         patches_->statistics().tolerance.value_or(sparse::kToleranceOfUnknownNoise);
 }
 
 /// Texels that no reading touches keep their grey.

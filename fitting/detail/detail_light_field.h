@@ -24,8 +24,7 @@ class DetailLightField final : public PatchLightField {
   /// Mid grey, and the same towards every direction. `atlas` is one of `mesh`.
   DetailLightField(const core::Mesh& mesh, core::Atlas atlas);
   /// Of its parts, as a file holds them.
-  DetailLightField(const core::Mesh& mesh, SurfaceTexture texture,
-                   sparse::LightFieldModel offsets);
+  DetailLightField(const core::Mesh& mesh, SurfaceTexture texture, sparse::LightFieldModel offsets);
 
   [[nodiscard]] std::string_view representation() const override { return "detail"; }
   [[nodiscard]] std::size_t patch_count() const override { return offsets_.patch_count(); }
@@ -46,9 +45,7 @@ class DetailLightField final : public PatchLightField {
     return patch_count() + texture_.page_count();
   }
 
-  [[nodiscard]] const SurfaceTexture* texture_between_patches() const override {
-    return &texture_;
-  }
+  [[nodiscard]] const SurfaceTexture* texture_between_patches() const override { return &texture_; }
   [[nodiscard]] const SurfaceTexture& texture() const { return texture_; }
   [[nodiscard]] SurfaceTexture& texture() { return texture_; }
   [[nodiscard]] const sparse::LightFieldModel& offsets() const { return offsets_; }

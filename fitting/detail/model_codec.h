@@ -10,8 +10,8 @@
 namespace sheen::fitting::detail {
 
 /// The texture, how many of its texels say something of their own (parameters "texelsStored" of
-/// "texelsOffered"), and the offsets in the form of sparse patches (sparse/model_codec.h), those of one
-/// term being zero.
+/// "texelsOffered"), and the offsets in the form of sparse patches (sparse/model_codec.h), those of
+/// one term being zero.
 ModelPart encode_model(const LightField& light_field);
 std::unique_ptr<const LightField> decode_model(const ModelPart& part, const core::Mesh& mesh);
 

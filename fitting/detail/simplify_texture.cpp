@@ -18,7 +18,7 @@ constexpr int kLargestTile = 64;
 constexpr int kSmallestTile = 4;
 constexpr double kPerNumber = 2;  // Akaike
 /// Texels that nobody observed follow the others, if only so much that a tile is never without any.
-constexpr float kLeastWeight = 1e-3f;
+constexpr float kUnobservedWeight = 1e-3f;
 
 /// Values of a channel at a tile's corners, or only the first: one colour.
 using Corners = Eigen::Vector4d;
@@ -36,8 +36,8 @@ Eigen::Vector4d corner_weights(int x, int y, const cv::Rect& tile) {
 /// A tile's simpler form.
 struct Fit {
   std::array<Corners, 3> corners;
-  double cost = 0;          ///< sum of n r^2
-  std::size_t texels = 0;   ///< that readings touch
+  double cost = 0;         ///< sum of n r^2
+  std::size_t texels = 0;  ///< that readings touch
 };
 
 class Simplifier {
@@ -102,10 +102,10 @@ class Simplifier {
         const std::size_t i = static_cast<std::size_t>(y) * width_ + static_cast<std::size_t>(x);
         if (weight_[i] < 0.0f) continue;
         const Eigen::Matrix<double, kColours, 1> basis =
-            kColours == 1 ? Eigen::Matrix<double, kColours, 1>::Ones().eval()
-                          : Eigen::Matrix<double, kColours, 1>(
-                                corner_weights(x, y, tile).head<kColours>());
-        visit(i, static_cast<double>(std::max(weight_[i], kLeastWeight)), basis);
+            kColours == 1
+                ? Eigen::Matrix<double, kColours, 1>::Ones().eval()
+                : Eigen::Matrix<double, kColours, 1>(corner_weights(x, y, tile).head<kColours>());
+        visit(i, static_cast<double>(std::max(weight_[i], kUnobservedWeight)), basis);
       }
     }
   }
@@ -143,8 +143,8 @@ class Simplifier {
     using Basis = Eigen::Matrix<double, kColours, 1>;
     for_each<kColours>(tile, [&](std::size_t i, double /*weight*/, const Basis& basis) {
       for (std::size_t channel = 0; channel < 3; ++channel) {
-        texture_[channel][i] = static_cast<float>(
-            basis.dot(fit.corners[channel].template head<kColours>()));
+        texture_[channel][i] =
+            static_cast<float>(basis.dot(fit.corners[channel].template head<kColours>()));
       }
     });
   }

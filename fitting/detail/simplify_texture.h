@@ -9,9 +9,9 @@
 
 namespace sheen::fitting::detail {
 
-/// Takes out of a texture what its observations do not ask for. Every chart is one colour, or square
-/// tiles, each a colour that changes linearly along its rows and columns (four colours) or four
-/// smaller tiles or, at last, its texels. A simpler form is taken where
+/// Takes out of a texture what its observations do not ask for. Every chart is one colour, or
+/// square tiles, each a colour that changes linearly along its rows and columns (four colours) or
+/// four smaller tiles or, at last, its texels. A simpler form is taken where
 ///
 ///     sum over texels and channels of n r^2 / noise^2  <=  2 (numbers that it saves),
 ///

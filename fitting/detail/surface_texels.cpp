@@ -48,9 +48,8 @@ Eigen::Vector3f nearest_weights(const std::array<Eigen::Vector2f, 3>& corner,
 
 /// Offers a triangle to all texels within reach of a reading.
 void offer(const core::Atlas& atlas, std::uint32_t triangle_idx, std::vector<Nearest>& nearest) {
-  const std::array<Eigen::Vector2f, 3> corner{atlas.place(triangle_idx, 0),
-                                              atlas.place(triangle_idx, 1),
-                                              atlas.place(triangle_idx, 2)};
+  const std::array<Eigen::Vector2f, 3> corner{
+      atlas.place(triangle_idx, 0), atlas.place(triangle_idx, 1), atlas.place(triangle_idx, 2)};
   const Eigen::Array2f least = corner[0].cwiseMin(corner[1]).cwiseMin(corner[2]).array() - 1.5f;
   const Eigen::Array2f most = corner[0].cwiseMax(corner[1]).cwiseMax(corner[2]).array() + 0.5f;
   const Eigen::Array2i first = least.ceil().cast<int>().cwiseMax(0);
@@ -61,8 +60,8 @@ void offer(const core::Atlas& atlas, std::uint32_t triangle_idx, std::vector<Nea
       const Eigen::Vector2f centre(static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f);
       const Eigen::Vector3f weights = nearest_weights(corner, centre);
       if (!weights.allFinite()) continue;  // a line seen as a triangle
-      const Eigen::Vector2f off = weights[0] * corner[0] + weights[1] * corner[1] +
-                                  weights[2] * corner[2] - centre;
+      const Eigen::Vector2f off =
+          weights[0] * corner[0] + weights[1] * corner[1] + weights[2] * corner[2] - centre;
       if (off.cwiseAbs().maxCoeff() > 1.0f) continue;
       Nearest& best = nearest[static_cast<std::size_t>(y) * static_cast<std::size_t>(atlas.width) +
                               static_cast<std::size_t>(x)];

@@ -12,7 +12,7 @@ namespace sheen::fitting::detail {
 
 /// A texel and the place on its triangle where the surface is nearest to its centre.
 struct SurfaceTexel {
-  std::uint32_t texel_idx;   ///< row * width + column
+  std::uint32_t texel_idx;    ///< row * width + column
   float at_second, at_third;  ///< weights of the triangle's second and third corner
 };
 

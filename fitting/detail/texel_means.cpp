@@ -26,10 +26,10 @@ Rgb read(const cv::Mat& image, const Eigen::Vector2f& at_px) {
   const std::uint8_t* const upper = image.ptr<std::uint8_t>(y) + 3 * x;
   const std::uint8_t* const lower = upper + image.step[0];
   const auto channel = [&](int c) {
-    const float above = (1 - right) * static_cast<float>(upper[c]) +
-                        right * static_cast<float>(upper[c + 3]);
-    const float under = (1 - right) * static_cast<float>(lower[c]) +
-                        right * static_cast<float>(lower[c + 3]);
+    const float above =
+        (1 - right) * static_cast<float>(upper[c]) + right * static_cast<float>(upper[c + 3]);
+    const float under =
+        (1 - right) * static_cast<float>(lower[c]) + right * static_cast<float>(lower[c + 3]);
     return (1 - below) * above + below * under;
   };
   return {channel(2), channel(1), channel(0)};

@@ -15,11 +15,11 @@
 namespace sheen::fitting::detail {
 
 /// The colours that views showed at a texel's place: weighted sums, the weight the squared cosine q
-/// between normal and view, because what is seen obliquely is seen unsharply. Integers, so that they
-/// do not depend on the order of the views.
+/// between normal and view, because what is seen obliquely is seen unsharply. Integers, so that
+/// they do not depend on the order of the views.
 struct alignas(16) TexelMean {
-  std::uint32_t weight = 0;                ///< sum of q, in 64ths
-  std::array<std::uint32_t, 3> colour{};   ///< sum of q times the colour, RGB, in 1020ths
+  std::uint32_t weight = 0;               ///< sum of q, in 64ths
+  std::array<std::uint32_t, 3> colour{};  ///< sum of q times the colour, RGB, in 1020ths
 
   /// Sum of q.
   [[nodiscard]] float observations() const { return static_cast<float>(weight) / 64.0f; }

@@ -21,12 +21,12 @@ namespace sheen::fitting::detail {
 /// neighbours; each stores its products with those to the right and below. Those with itself
 /// follow: the b of a pixel add up to 1, so a row of the matrix adds up to `weight`.
 struct alignas(32) TexelSums {
-  std::uint32_t weight = 0;                    ///< q b
-  std::uint32_t right = 0;                     ///< q b b'
-  std::uint32_t below = 0;                     ///< q b b'
-  std::uint32_t below_right = 0;               ///< q b b'
-  std::uint32_t below_left = 0;                ///< q b b'
-  std::array<std::uint32_t, 3> colour{};       ///< q b I, RGB
+  std::uint32_t weight = 0;               ///< q b
+  std::uint32_t right = 0;                ///< q b b'
+  std::uint32_t below = 0;                ///< q b b'
+  std::uint32_t below_right = 0;          ///< q b b'
+  std::uint32_t below_left = 0;           ///< q b b'
+  std::array<std::uint32_t, 3> colour{};  ///< q b I, RGB
 };
 static_assert(sizeof(TexelSums) == 32);
 

@@ -27,10 +27,10 @@ class System {
         diagonal_(texels.size(), 0.0f) {
     for_rows([&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        const std::uint32_t others =
-            texels_[i].right + texels_[i - 1].right + texels_[i].below + texels_[i - width_].below +
-            texels_[i].below_right + texels_[i - width_ - 1].below_right + texels_[i].below_left +
-            texels_[i - width_ + 1].below_left;
+        const std::uint32_t others = texels_[i].right + texels_[i - 1].right + texels_[i].below +
+                                     texels_[i - width_].below + texels_[i].below_right +
+                                     texels_[i - width_ - 1].below_right + texels_[i].below_left +
+                                     texels_[i - width_ + 1].below_left;
         // Modulo 2^32 like the sums: the diagonal itself is small enough.
         const std::uint32_t row = texels_[i].weight * kReadingUnits - others;
         diagonal_[i] = static_cast<float>(row) * kUnit;
@@ -55,9 +55,7 @@ class System {
   template <typename Body>
   double sum_over_rows(const Body& body) const {
     std::vector<double> sums(height_, 0.0);
-    for_rows([&](std::size_t begin, std::size_t end) {
-      sums[begin / width_] = body(begin, end);
-    });
+    for_rows([&](std::size_t begin, std::size_t end) { sums[begin / width_] = body(begin, end); });
     return std::accumulate(sums.begin(), sums.end(), 0.0);
   }
 
@@ -134,10 +132,9 @@ Planes mean_texture(std::span<const TexelSums> texels) {
   for (std::size_t channel = 0; channel < 3; ++channel) {
     planes[channel].resize(texels.size());
     for (std::size_t i = 0; i < texels.size(); ++i) {
-      planes[channel][i] = texels[i].weight == 0
-                               ? 0.0f
-                               : static_cast<float>(texels[i].colour[channel]) /
-                                     static_cast<float>(texels[i].weight);
+      planes[channel][i] = texels[i].weight == 0 ? 0.0f
+                                                 : static_cast<float>(texels[i].colour[channel]) /
+                                                       static_cast<float>(texels[i].weight);
     }
   }
   return planes;

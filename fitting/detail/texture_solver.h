@@ -20,9 +20,9 @@ Planes mean_texture(std::span<const TexelSums> texels);
 ///
 ///     sum_p q_p |b_p . t - I_p|^2 + lambda sum |t - t_0|^2
 ///
-/// with t_0 what it is given, by conjugate gradients; a few steps are enough and as good as a larger
-/// lambda. Texels without pixels stay. `texels` are rows of `width`, those at the border without
-/// pixels. The same on any number of threads.
+/// with t_0 what it is given, by conjugate gradients; a few steps are enough and as good as a
+/// larger lambda. Texels without pixels stay. `texels` are rows of `width`, those at the border
+/// without pixels. The same on any number of threads.
 void solve_texture(std::span<const TexelSums> texels, std::size_t width, int threads,
                    Planes& texture);
 

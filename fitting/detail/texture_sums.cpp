@@ -55,14 +55,13 @@ void TextureSums::integrate(const core::Observation& observation, const ViewRast
         std::clamp(std::lround(static_cast<double>(value) / observation.gain), 0L, 255L));
   }
   for (const std::size_t parity : {std::size_t{0}, std::size_t{1}}) {
-    core::parallel_for(
-        (bands_.size() + 1 - parity) / 2, threads_,
-        [&](std::size_t begin, std::size_t end) {
-          for (std::size_t i = begin; i < end; ++i) {
-            integrate_triangles(bands_[2 * i + parity], observation, raster);
-          }
-        },
-        1);
+    core::parallel_for((bands_.size() + 1 - parity) / 2, threads_,
+                       [&](std::size_t begin, std::size_t end) {
+                         for (std::size_t i = begin; i < end; ++i) {
+                           integrate_triangles(bands_[2 * i + parity], observation, raster);
+                         }
+                       },
+                       1);
   }
   integrate_triangles(high_, observation, raster);
 }

@@ -25,8 +25,9 @@ void ViewRaster::set_view(const core::Observation& observation) {
   if (box_.right < box_.left || box_.bottom < box_.top) return;
   // A pixel more on every side: neighbours are compared. That large triangles are drawn with
   // straight edges does not matter: the pixels are found by the same edges.
-  static_cast<void>(depth_.draw(observation.view, core::eye_in_object(observation.camera_from_object),
-              {box_.left - 1, box_.top - 1, box_.right + 1, box_.bottom + 1}));
+  static_cast<void>(depth_.draw(observation.view,
+                                core::eye_in_object(observation.camera_from_object),
+                                {box_.left - 1, box_.top - 1, box_.right + 1, box_.bottom + 1}));
   find_whole_pixels();
 }
 

@@ -30,8 +30,8 @@ struct ModelPart {
   std::map<std::string, std::span<const std::byte>> arrays;
   /// Of patches only: one flag each, 1 where the patch was seen in the fit.
   std::span<const std::byte> observed{};
-  /// Colours between the patches, or null; in the file it is an image that every viewer shows. Belongs
-  /// to the light field or, while a file is read, to the reader.
+  /// Colours between the patches, or null; in the file it is an image that every viewer shows.
+  /// Belongs to the light field or, while a file is read, to the reader.
   const SurfaceTexture* texture = nullptr;
   /// Keeps alive what `encode` had to make for the arrays.
   std::shared_ptr<const void> owner;

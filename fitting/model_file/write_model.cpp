@@ -53,8 +53,8 @@ std::size_t add_colours(const std::vector<Eigen::Vector3f>& srgb, DocumentBuilde
 }
 
 std::size_t add_places(const std::vector<core::AtlasPoint>& places, DocumentBuilder& builder) {
-  const std::size_t accessor = builder.add_accessor(bytes_of(places), kArrayBuffer, kUnsignedShort,
-                                                    "VEC2", places.size());
+  const std::size_t accessor =
+      builder.add_accessor(bytes_of(places), kArrayBuffer, kUnsignedShort, "VEC2", places.size());
   builder.document["accessors"][accessor]["normalized"] = true;
   return accessor;
 }

@@ -80,7 +80,8 @@ void read_coefficients(std::span<const Eigen::half> values, PatchModel& patch) {
 ModelPart encode_patches(const LightFieldModel& model, SingleColours single_colours) {
   const auto packed = std::make_shared<PackedArrays>();
   packed->shapes.reserve(model.patch_count());
-  for (std::size_t i = 0; i < model.patch_count(); ++i) pack(model.patch(i), single_colours, *packed);
+  for (std::size_t i = 0; i < model.patch_count(); ++i)
+    pack(model.patch(i), single_colours, *packed);
   ModelPart part;
   part.observed = std::as_bytes(std::span(model.observed()));
   part.parameters = {{"atoms", atoms_as_json()}};

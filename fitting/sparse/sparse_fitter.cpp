@@ -115,7 +115,7 @@ void SparsePatches::update_tolerance() {
 }
 
 bool SparsePatches::take(std::size_t patch_idx, const SelectedModel& selected,
-                        std::span<const DirectedColour> samples) {
+                         std::span<const DirectedColour> samples) {
   PatchState& state = states_[patch_idx];
   state.expected_error = selected.expected_error;
   state.refit_priority = 0;
@@ -129,7 +129,7 @@ bool SparsePatches::take(std::size_t patch_idx, const SelectedModel& selected,
 // Most samples of a slowly moving camera are averaged into a kept one and end here. Returns whether
 // the model changed.
 bool SparsePatches::integrate_sample(std::size_t patch_idx, const DirectedColour& sample,
-                                    NoiseEstimate& noise) {
+                                     NoiseEstimate& noise) {
   // Keep the sample.
   constexpr float saturated = 254.0f / 255.0f;
   PatchState& state = states_[patch_idx];
@@ -285,7 +285,7 @@ const ModelUpdate& SparsePatches::finish() {
 }
 
 std::optional<float> SparsePatches::predicted_error(std::size_t patch_idx,
-                                                   const Eigen::Vector2f& uv) const {
+                                                    const Eigen::Vector2f& uv) const {
   const PatchState& state = states_[patch_idx];
   if (state.samples.size() == 0) return std::nullopt;
   return sparse::predicted_error(state.samples, pool_, state.spread, uv,
@@ -308,7 +308,7 @@ Eigen::Vector3f SparsePatches::mean_over_views(std::size_t patch_idx) const {
 }  // namespace
 
 std::unique_ptr<SparseFitter> make_sparse_fitter(const core::VertexNeighbours& neighbours,
-                                                const Options& options, int threads) {
+                                                 const Options& options, int threads) {
   options.check();
   assert(threads >= 1);
   return std::make_unique<SparsePatches>(neighbours, options, threads);

@@ -26,6 +26,6 @@ class SparseFitter : public PatchFitter {
 /// which makes the result independent of the order of views as long as all samples are kept.
 /// `threads` >= 1. Throws std::invalid_argument for bad options.
 std::unique_ptr<SparseFitter> make_sparse_fitter(const core::VertexNeighbours& neighbours,
-                                                const Options& options, int threads);
+                                                 const Options& options, int threads);
 
 }  // namespace sheen::fitting::sparse

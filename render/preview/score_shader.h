@@ -19,8 +19,8 @@ struct ScorePalette {
   Eigen::Vector3f low, middle, high, unseen;
 };
 
-/// Paints a number in [0, 1] per patch, limited to it, or kUnseenScore. `scores` has an entry per patch, outlives
-/// the shader and is read by `upload` only.
+/// Paints a number in [0, 1] per patch, limited to it, or kUnseenScore. `scores` has an entry per
+/// patch, outlives the shader and is read by `upload` only.
 std::unique_ptr<PatchShader> make_score_shader(const gl::Functions& gl,
                                                const std::vector<float>& scores,
                                                const ScorePalette& palette);

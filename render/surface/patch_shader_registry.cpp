@@ -20,10 +20,8 @@ using Factory = std::unique_ptr<PatchShader> (*)(const gl::Functions&,
 
 /// One line per representation.
 constexpr std::pair<std::string_view, Factory> kPatchShaders[] = {
-    {"detail", detail::make_patch_shader},
-    {"iwls", iwls::make_patch_shader},
-    {"mean", mean::make_patch_shader},
-    {"sh", spherical_harmonics::make_patch_shader},
+    {"detail", detail::make_patch_shader}, {"iwls", iwls::make_patch_shader},
+    {"mean", mean::make_patch_shader},     {"sh", spherical_harmonics::make_patch_shader},
     {"sparse", sparse::make_patch_shader},
 };
 

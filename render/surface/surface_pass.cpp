@@ -41,15 +41,16 @@ std::string lens_glsl() {
   std::string functions =
       "#define Real float\n#define LENS_FUNCTION\n#define LENS_ARRAY(name) float name[8]\n"
       "#define LENS_OUT(name) out float name\n";
-  std::string choice = "vec2 distort(vec2 ideal) {\n"
-                       "  float k[8] = float[8](lens[0].x, lens[0].y, lens[0].z, lens[0].w,\n"
-                       "                        lens[1].x, lens[1].y, lens[1].z, lens[1].w);\n"
-                       "  vec2 moved = ideal;\n";
+  std::string choice =
+      "vec2 distort(vec2 ideal) {\n"
+      "  float k[8] = float[8](lens[0].x, lens[0].y, lens[0].z, lens[0].w,\n"
+      "                        lens[1].x, lens[1].y, lens[1].z, lens[1].w);\n"
+      "  vec2 moved = ideal;\n";
   for (const core::LensTraits& traits : core::kLenses) {
     const std::string name(traits.name);
     functions += core::lens_text(name + ".lens");
-    choice += "  if (lens_kind == " + std::to_string(static_cast<int>(traits.kind)) +
-              ") distort_" + name + "(k, ideal.x, ideal.y, moved.x, moved.y);\n";
+    choice += "  if (lens_kind == " + std::to_string(static_cast<int>(traits.kind)) + ") distort_" +
+              name + "(k, ideal.x, ideal.y, moved.x, moved.y);\n";
   }
   choice += "  return moved;\n}\n";
   return std::string(shader_text("shaders/view_block.glsl")) + functions + choice +
@@ -182,9 +183,8 @@ void SurfacePass::make_buffers(const std::vector<Vertex>& vertices,
   index_count_ = static_cast<GLsizei>(3 * triangles.size());
   vertices_ = gl::make_buffer(gl_, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
                               vertices.data());
-  indices_ =
-      gl::make_buffer(gl_, static_cast<GLsizeiptr>(triangles.size() * sizeof(triangles[0])),
-                      triangles.data());
+  indices_ = gl::make_buffer(gl_, static_cast<GLsizeiptr>(triangles.size() * sizeof(triangles[0])),
+                             triangles.data());
   view_block_ = gl::make_buffer(gl_, sizeof(ViewBlock), nullptr);
 
   // Say how a vertex lies in them.

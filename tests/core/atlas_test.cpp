@@ -60,16 +60,17 @@ Mesh with_needles() {
 }
 
 std::vector<Case> cases() {
-  return {{"a plane", testing::square_grid(20, 1, 0), 0.01f},
-          {"a sphere", testing::sphere(40, 80), 0.01f},
-          {"a coarse sphere", testing::sphere(3, 4), 0.02f},
-          {"a tetrahedron", tetrahedron(), 0.01f},
-          {"two spheres", testing::together(testing::sphere(9, 18), testing::sphere(30, 60)), 0.01f},
-          {"a soup", soup(300), 0.01f},
-          {"needles", with_needles(), 0.01f},
-          {"texels larger than triangles", testing::sphere(40, 80), 0.3f},
-          {"one texel", tetrahedron(), 100.0f},
-          {"nothing", {}, 0.01f}};
+  return {
+      {"a plane", testing::square_grid(20, 1, 0), 0.01f},
+      {"a sphere", testing::sphere(40, 80), 0.01f},
+      {"a coarse sphere", testing::sphere(3, 4), 0.02f},
+      {"a tetrahedron", tetrahedron(), 0.01f},
+      {"two spheres", testing::together(testing::sphere(9, 18), testing::sphere(30, 60)), 0.01f},
+      {"a soup", soup(300), 0.01f},
+      {"needles", with_needles(), 0.01f},
+      {"texels larger than triangles", testing::sphere(40, 80), 0.3f},
+      {"one texel", tetrahedron(), 100.0f},
+      {"nothing", {}, 0.01f}};
 }
 
 double area(const std::array<Eigen::Vector2f, 3>& corner) {

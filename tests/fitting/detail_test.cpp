@@ -123,8 +123,9 @@ TEST(Detail, FinishMayBeCalledInBetween) {
 // A surface of one colour, without noise: one texel per chart, of that colour, and no patch has
 // anything to say about directions.
 TEST(Detail, AConstantObjectIsOneColour) {
-  const Photographs views(render::testing::sphere(0.1f, 12), 12,
-                          [](const auto&, const auto&) { return Eigen::Vector3f(0.2f, 0.4f, 0.6f); });
+  const Photographs views(render::testing::sphere(0.1f, 12), 12, [](const auto&, const auto&) {
+    return Eigen::Vector3f(0.2f, 0.4f, 0.6f);
+  });
   const auto fitter = make(views.mesh());
   views.show(first(12), *fitter);
   fitter->finish();

@@ -178,7 +178,8 @@ TEST_F(HostileTexture, EveryTruncationIsRefused) {
 // Whatever the image holds, reading ends with a model or a refusal.
 TEST_F(HostileTexture, BrokenImagesAreRefusedOrRead) {
   const Glb glb = parse_glb(good_);
-  const json& view = glb.document["bufferViews"][glb.document["images"][0]["bufferView"].get<int>()];
+  const json& view =
+      glb.document["bufferViews"][glb.document["images"][0]["bufferView"].get<int>()];
   const auto begin = view["byteOffset"].get<std::size_t>();
   const auto size = view["byteLength"].get<std::size_t>();
   for (std::size_t at = 0; at < size; ++at) {
@@ -191,8 +192,8 @@ TEST_F(HostileTexture, BrokenImagesAreRefusedOrRead) {
     }
   }
   // An image that claims to be 65536 texels wide, and one that ends early.
-  EXPECT_TRUE(refused(
-      with_new_checksum([&](json&, std::string& binary) { binary[begin + 17] = 1; })));
+  EXPECT_TRUE(
+      refused(with_new_checksum([&](json&, std::string& binary) { binary[begin + 17] = 1; })));
   EXPECT_TRUE(refused(with_new_checksum([&](json& document, std::string&) {
     document["bufferViews"][document["images"][0]["bufferView"].get<int>()]["byteLength"] = 40;
   })));

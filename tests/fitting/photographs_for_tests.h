@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/samples/vertex_view.h"
-#include "core/visibility/ray_caster.h"
 #include "core/visibility/raster_visibility.h"
+#include "core/visibility/ray_caster.h"
 #include "fitting/fitter.h"
 #include "pipeline/view_observer.h"
 #include "tests/render/test_scenes.h"
@@ -59,9 +59,8 @@ class Photographs {
  private:
   [[nodiscard]] Photograph take(const core::RayCaster& caster, const Eigen::Isometry3d& pose,
                                 const Look& look) const {
-    Photograph photograph{cv::Mat(camera_.height_px(), camera_.width_px(), CV_8UC3,
-                                  cv::Scalar(0, 0, 0)),
-                          pose};
+    Photograph photograph{
+        cv::Mat(camera_.height_px(), camera_.width_px(), CV_8UC3, cv::Scalar(0, 0, 0)), pose};
     const Eigen::Vector3f eye = core::eye_in_object(pose);
     const Eigen::Matrix3d object_from_camera = pose.linear().transpose();
     for (int y = 0; y < photograph.image.rows; ++y) {

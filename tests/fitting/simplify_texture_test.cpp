@@ -94,7 +94,8 @@ TEST(SimplifyTexture, PrintStays) {
 // Never does a texture move by more than the criterion allows: n r^2 / noise^2 <= 2 a number.
 TEST(SimplifyTexture, StaysWithinTwiceTheNoise) {
   const auto waves = [](int x, int y) {
-    return 100.0f + 3.0f * std::sin(0.3f * static_cast<float>(x) + 0.01f * static_cast<float>(x * y));
+    return 100.0f +
+           3.0f * std::sin(0.3f * static_cast<float>(x) + 0.01f * static_cast<float>(x * y));
   };
   Planes planes = texture_of(waves);
   const TexelCount count = simplify(planes);

@@ -80,7 +80,8 @@ TEST(TexelSums, DoNotDependOnTheOrderOfPixels) {
   }
 }
 
-/// A texture that changes fast, and pixels without noise of its bilinear reading at places all over.
+/// A texture that changes fast, and pixels without noise of its bilinear reading at places all
+/// over.
 class Sharpening : public ::testing::Test {
  protected:
   Sharpening() : truth_(kWidth * kHeight), sums_(empty_sums()) {
@@ -103,7 +104,8 @@ class Sharpening : public ::testing::Test {
     std::size_t count = 0;
     for (std::size_t y = 3; y + 3 < kHeight; ++y) {
       for (std::size_t x = 3; x + 3 < kWidth; ++x) {
-        squared += std::pow(static_cast<double>(texture[y * kWidth + x] - truth_[y * kWidth + x]), 2);
+        squared +=
+            std::pow(static_cast<double>(texture[y * kWidth + x] - truth_[y * kWidth + x]), 2);
         ++count;
       }
     }
@@ -123,8 +125,8 @@ TEST_F(Sharpening, ComesNearerToTheTruth) {
   EXPECT_LT(error(texture[0]), 0.4 * before);
 }
 
-// The truth explains the pixels to their rounding, so it stays: each texel's equation is off by less
-// than the mean rounding of its pixels, half a step.
+// The truth explains the pixels to their rounding, so it stays: each texel's equation is off by
+// less than the mean rounding of its pixels, half a step.
 TEST_F(Sharpening, LeavesTheTruthAlone) {
   Planes texture{truth_, truth_, truth_};
   solve_texture(sums_, kWidth, 1, texture);

@@ -43,8 +43,8 @@ struct View {
   core::CameraModel camera;
 };
 
-// Hardware reads textures with 8 bits between two texels, 1/2 of a step of 1/255 at most; places are
-// interpolated in single precision on both sides.
+// Hardware reads textures with 8 bits between two texels, 1/2 of a step of 1/255 at most; places
+// are interpolated in single precision on both sides.
 TEST(DetailRenderer, GpuEqualsReference) {
   const std::vector<View> views{
       {"a sphere", testing::sphere(0.1f, 20), testing::plain_camera(320, 240)},
@@ -61,8 +61,8 @@ TEST(DetailRenderer, GpuEqualsReference) {
         make_reference_surface_renderer(view.mesh, model, 1)->render(view.camera, pose);
     const cv::Mat interior = testing::common_interior(gpu.mask, cpu.mask, 2);
     const testing::Difference found = testing::difference(gpu.image, cpu.image, interior);
-    std::cout << view.name << ": mean " << found.mean << " 99.9 % " << found.quantile_999
-              << " max " << found.largest << " over " << found.pixels << " pixels\n";
+    std::cout << view.name << ": mean " << found.mean << " 99.9 % " << found.quantile_999 << " max "
+              << found.largest << " over " << found.pixels << " pixels\n";
     EXPECT_GT(found.pixels, 3000u) << view.name;
     EXPECT_LE(found.quantile_999, 1) << view.name;
   }
