@@ -17,7 +17,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <utility>
 
 namespace sheen::pipeline {
@@ -173,7 +172,6 @@ bool Reconstruction::Impl::admit(const core::SampleBatch& batch, FrameListener* 
 }
 
 void Reconstruction::Impl::finish() {
-  if (std::getenv("LIVE") != nullptr) return;  // TEMPORARY
   const double start_ms = core::own_cpu_ms();
   model->finish();
   finish_cpu_ms = core::own_cpu_ms() - start_ms;
