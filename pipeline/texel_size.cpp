@@ -33,7 +33,9 @@ bool asks_texel_size(std::string_view representation, const fitting::OptionValue
 }
 
 void set_texel_size(double texel_m, fitting::OptionValues& values) {
-  values[kOption] = fmt::format("{:.4g}", 1000 * texel_m);
+  constexpr double least_mm = 1e-4;  // as the option allows
+  constexpr double most_mm = 1e4;
+  values[kOption] = fmt::format("{:.4g}", std::clamp(1000 * texel_m, least_mm, most_mm));
 }
 
 }  // namespace sheen::pipeline

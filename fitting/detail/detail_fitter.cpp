@@ -43,6 +43,7 @@ class DetailFitter final : public Fitter {
   DetailFitter(const core::Mesh& mesh, const Options& options, int threads)
       : mesh_(mesh),
         threads_(threads),
+        tolerance_(options.patches.tolerance.value_or(sparse::kToleranceOfUnknownNoise)),
         patches_(
             sparse::make_sparse_fitter(core::vertex_neighbours(mesh), options.patches, threads)),
         model_(mesh, atlas_of(mesh, options)),
@@ -65,6 +66,7 @@ class DetailFitter final : public Fitter {
 
   const core::Mesh& mesh_;
   int threads_;
+  float tolerance_;
   std::unique_ptr<sparse::SparseFitter> patches_;
   DetailLightField model_;
   ViewRaster raster_;
@@ -151,10 +153,10 @@ std::vector<float> DetailFitter::texel_weights() const {
   return weights;
 }
 
-/// Deviation of one observation, of 255: the patches' tolerance is twice it.
+/// Deviation of one observation, of 255: a tolerance is twice it. What the patches estimate would
+/// depend on the order of the views.
 float DetailFitter::noise() const {
-  return 255.0f * 0.5f *
-         patches_->statistics().tolerance.value_or(sparse::kToleranceOfUnknownNoise);
+  return 255.0f * 0.5f * tolerance_;
 }
 
 /// Texels that no reading touches keep their grey.

@@ -14,7 +14,6 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
-#include <cstddef>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -63,9 +62,9 @@ gl::Program make_surface_program(const gl::Functions& gl, const std::string& pat
   const bool shaded = !patch_glsl.empty();
   const std::string defines =
       std::string(shaded ? "#define SHADED\n" : "") + (textured ? "#define TEXTURED\n" : "") +
-      (tessellated ? "#define TESSELLATED\n" : "") +  //
-      "#define UNSEEN_WEIGHT " + std::to_string(fitting::kUnseenWeight) + "\n" +
-      "#define SURFACE_TEXTURE_UNIT " + std::to_string(kSurfaceTextureUnit) + "\n";
+      (tessellated ? "#define TESSELLATED\n" : "") + "#define UNSEEN_WEIGHT " +
+      std::to_string(fitting::kUnseenWeight) + "\n" + "#define SURFACE_TEXTURE_UNIT " +
+      std::to_string(kSurfaceTextureUnit) + "\n";
   const std::string lens = lens_glsl();
 
   // Gather the stages.
@@ -170,9 +169,9 @@ void SurfacePass::upload_split(const core::Mesh& mesh, const core::Atlas& atlas)
     gl_.EnableVertexArrayAttrib(array, attribute);
     gl_.VertexArrayAttribBinding(array, attribute, 0);
   }
-  gl_.VertexArrayAttribFormat(array, 2, 2, GL_UNSIGNED_SHORT, GL_TRUE,
-                              offsetof(TexturedVertex, place));
-  gl_.VertexArrayAttribIFormat(array, 3, 1, GL_UNSIGNED_INT, offsetof(TexturedVertex, patch_idx));
+  gl_.VertexArrayAttribFormat(array, 2, 2, GL_UNSIGNED_SHORT, GL_TRUE, sizeof(Vertex));
+  gl_.VertexArrayAttribIFormat(array, 3, 1, GL_UNSIGNED_INT,
+                               sizeof(Vertex) + sizeof(core::AtlasPoint));
 }
 
 /// Position and normal are what every vertex begins with.
