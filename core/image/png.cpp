@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <limits>
 
 namespace sheen::core {
@@ -24,7 +25,7 @@ std::uint32_t big_endian(std::span<const std::byte, 4> bytes) {
 }  // namespace
 
 std::vector<std::uint8_t> encode_png(const cv::Mat& image) {
-  CV_Assert(image.type() == CV_8UC3 && !image.empty());
+  assert(image.type() == CV_8UC3 && !image.empty());
   std::vector<std::uint8_t> bytes;
   cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9});
   return bytes;
