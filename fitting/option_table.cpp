@@ -74,8 +74,7 @@ FitOption flag_option(std::string name, bool& value, std::string help) {
 
 void apply(const OptionValues& values, std::string_view representation, const OptionTable& table) {
   for (const auto& [name, text] : values) {
-    const auto option = std::find_if(table.begin(), table.end(),
-                                     [&](const FitOption& o) { return o.name == name; });
+    const auto option = std::ranges::find(table, name, &FitOption::name);
     if (option == table.end()) {
       throw std::invalid_argument("--" + name + " is no option of representation " +
                                   std::string(representation));

@@ -11,6 +11,8 @@
 
 namespace sheen::fitting {
 
+class SurfaceTexture;
+
 /// Weight with which a patch that was never seen enters the interpolation across a triangle: small
 /// enough that any seen neighbour decides, large enough to divide by.
 inline constexpr float kUnseenWeight = 1.0f / 1024.0f;
@@ -34,6 +36,15 @@ class PatchLightField : public LightField {
   /// Radiance of a patch towards a direction on its unit disc.
   [[nodiscard]] virtual WeightedColour evaluate(std::size_t patch_idx,
                                                 const Eigen::Vector2f& uv) const = 0;
+
+  /// Colours that lie between the patches, too, and are added to what is interpolated across a
+  /// triangle; null: none.
+  [[nodiscard]] virtual const SurfaceTexture* texture_between_patches() const { return nullptr; }
+  /// What is interpolated: `evaluate` without the texture.
+  [[nodiscard]] virtual WeightedColour interpolated_part(std::size_t patch_idx,
+                                                         const Eigen::Vector2f& uv) const {
+    return evaluate(patch_idx, uv);
+  }
 
   /// Direction-independent colour of a patch, sRGB in [0, 1].
   [[nodiscard]] virtual Eigen::Vector3f mean_colour(std::size_t patch_idx) const = 0;

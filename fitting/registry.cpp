@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/descriptor.h"
+#include "fitting/detail/descriptor.h"
 #include "fitting/iwls/descriptor.h"
 #include "fitting/mean/descriptor.h"
 #include "fitting/nearest_views/descriptor.h"
@@ -15,7 +16,8 @@ namespace {
 /// One line per representation; the first is the default.
 std::vector<const Descriptor*>& registry() {
   static std::vector<const Descriptor*> all{
-      &sparse::kDescriptor, &iwls::kDescriptor,          &spherical_harmonics::kDescriptor,
+      &sparse::kDescriptor, &detail::kDescriptor,
+      &iwls::kDescriptor,   &spherical_harmonics::kDescriptor,
       &mean::kDescriptor,   &nearest_views::kDescriptor,
   };
   return all;

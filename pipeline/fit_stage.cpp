@@ -59,7 +59,8 @@ void FitStage::observe(const capture::Frame& frame, core::StageTimes& times, Pos
     return;
   }
   integrated_.push_back({frame.index, camera_from_object, gain});
-  fit({frame.index, frame.image, camera, camera_from_object, parts_.observer.view(), *samples},
+  fit({frame.index, frame.image, camera, camera_from_object, parts_.observer.view(), *samples,
+       gain},
       times);
 }
 

@@ -18,8 +18,8 @@ void replay_observations(const capture::Session& session, std::span<const Integr
     observer.see(camera, view->camera_from_object);
     core::SampleBatch& samples = observer.sample(frame->image);
     if (view->gain != 1) divide_by_gain(view->gain, samples);
-    observe(
-        {frame->index, frame->image, camera, view->camera_from_object, observer.view(), samples});
+    observe({frame->index, frame->image, camera, view->camera_from_object, observer.view(), samples,
+             view->gain});
     ++view;
   }
 }

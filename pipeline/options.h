@@ -32,9 +32,10 @@ struct PhotometricOptions {
   bool exposure = false;
 };
 
-/// Where patches lie: one per vertex of the mesh, or the mesh subdivided until its edges are as
-/// short as a pixel's footprint.
-enum class Patches { vertex, texel };
+/// Where patches lie: one per vertex of the mesh; the mesh subdivided until its edges are as short
+/// as a pixel's footprint; one per vertex and a texture of such a footprint, which is what
+/// representation "detail" is.
+enum class Patches { vertex, texel, detail };
 
 /// Everything a reconstruction may be asked.
 struct ReconstructionOptions {

@@ -3,7 +3,7 @@
 
 #include "core/mesh/bounds.h"
 #include "core/mesh/refine_mesh.h"
-#include "core/numerics/median.h"
+#include "pipeline/texel_size.h"
 
 #include <Eigen/Geometry>
 
@@ -21,22 +21,20 @@ constexpr std::size_t kMostPatches = 2'000'000;
 
 std::optional<double> pixel_footprint_m(const capture::Session& session, const core::Mesh& mesh,
                                         capture::PoseEstimator& poses) {
-  const Eigen::Vector3d centre_in_board =
-      session.board_from_object * core::bounds_of(mesh).center().cast<double>();
-
-  std::vector<double> distances_m;
+  std::vector<Eigen::Isometry3d> camera_from_object;
   const auto frames = capture::open_frames(session, 0, kReadFrames);
   const int stride = std::max(
       1, std::min(frames->frame_count().value_or(kReadFrames), kReadFrames) / kProbedFrames);
   for (int i = 0; const auto frame = frames->next(); ++i) {
-    if (i % stride != 0 && !distances_m.empty()) continue;
+    if (i % stride != 0 && !camera_from_object.empty()) continue;
     const auto result = poses.estimate(*frame);
     if (const auto* pose = std::get_if<capture::FramePose>(&result)) {
-      distances_m.push_back((pose->camera_from_board * centre_in_board).norm());
+      camera_from_object.push_back(pose->camera_from_board * session.board_from_object);
     }
   }
-  if (distances_m.empty()) return std::nullopt;
-  return core::upper_median(distances_m) / session.camera.intrinsics().focal_px.x();
+  if (camera_from_object.empty()) return std::nullopt;
+  return pixel_footprint_m(camera_from_object, core::bounds_of(mesh).center().cast<double>(),
+                           session.camera.intrinsics().focal_px.x());
 }
 
 core::Mesh texel_mesh(const core::Mesh& mesh, double pixel_footprint_m, double spacing_px) {

@@ -2,6 +2,7 @@
 #include "pipeline/reconstruct.h"
 
 #include "core/diagnostics/cpu_clock.h"
+#include "core/mesh/bounds.h"
 #include "core/visibility/raster_visibility.h"
 #include "fitting/descriptor.h"
 #include "fitting/guidance/capture_score.h"
@@ -12,6 +13,7 @@
 #include "pipeline/session_board.h"
 #include "pipeline/session_mesh.h"
 #include "pipeline/session_parts.h"
+#include "pipeline/texel_size.h"
 
 #include <fmt/format.h>
 
@@ -50,6 +52,7 @@ struct Reconstruction::Impl {
   core::Mesh read_mesh(ProgressSink& sink);
   core::Mesh patch_mesh();
   void look_at_sides(const TrackedFrame& tracked, ProgressSink& sink);
+  double texel_size_m() const;
   std::unique_ptr<capture::PoseEstimator> pose_estimator() const;
   std::unique_ptr<fitting::Fitter> make_fitter(const std::string& name,
                                                const fitting::OptionValues& values,
@@ -94,6 +97,9 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
           mesh, make_visibility(inputs.make_visibility, mesh, options.threads), options.limits,
           options.threads)),
       visibility(inputs.make_visibility) {
+  if (asks_texel_size(options.representation, options.fit)) {
+    set_texel_size(texel_size_m(), options.fit);
+  }
   fitter = make_fitter(options.representation, options.fit, history);
   if (options.with_mean && options.representation != kMean) {
     mean = make_fitter(kMean, {}, mean_history);
@@ -136,7 +142,7 @@ core::Mesh Reconstruction::Impl::read_mesh(ProgressSink& sink) {
 
 /// Refined to the images' resolution when patches are texels.
 core::Mesh Reconstruction::Impl::patch_mesh() {
-  if (options.patches == Patches::vertex) return object_mesh;
+  if (options.patches != Patches::texel) return object_mesh;
   const auto footprint_m = pixel_footprint_m(session, object_mesh, *pose_estimator());
   if (!footprint_m) return object_mesh;  // the run itself will say why no frame is posed
   return texel_mesh(object_mesh, *footprint_m, options.texel_px);
@@ -155,6 +161,14 @@ void Reconstruction::Impl::look_at_sides(const TrackedFrame& tracked, ProgressSi
     sink.note(session.mesh.string() +
               ": what is fitted now shows its inside; sheen replay of this session turns it");
   }
+}
+
+/// What a pixel covers, supposing that the object fills the image where that is not known yet.
+double Reconstruction::Impl::texel_size_m() const {
+  const auto footprint_m =
+      is_live ? std::nullopt : pixel_footprint_m(session, mesh, *pose_estimator());
+  const double diagonal_m = static_cast<double>(core::bounds_of(mesh).diagonal().norm());
+  return footprint_m.value_or(diagonal_m / session.camera.height_px());
 }
 
 std::unique_ptr<fitting::Fitter> Reconstruction::Impl::make_fitter(

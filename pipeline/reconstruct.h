@@ -44,8 +44,8 @@ class FrameListener {
 /// somebody may look at the model while it grows.
 class Reconstruction {
  public:
-  /// Opens all that may be wrong: mesh, poses, settings. Reads part of the recording where texel
-  /// patches or a refined board ask for it. Throws core::Error, or std::invalid_argument for
+  /// Opens all that may be wrong: mesh, poses, settings. Reads part of the recording where texels
+  /// or a refined board ask for it. Throws core::Error, or std::invalid_argument for
   /// settings that the representation refuses.
   Reconstruction(ReconstructionInputs inputs, const ReconstructionOptions& options,
                  ProgressSink& sink);

@@ -4,6 +4,7 @@
 #include "core/mesh/bounds.h"
 #include "fitting/model_file/model_file.h"
 #include "fitting/patch_light_field.h"
+#include "fitting/texture/surface_texture.h"
 #include "pipeline/session_mesh.h"
 
 #include <Eigen/Geometry>
@@ -51,6 +52,11 @@ nlohmann::ordered_json describe_model(const std::filesystem::path& path) {
     const auto& observed = patches->observed();
     document["patches"] = patches->patch_count();
     document["patches_observed"] = std::count(observed.begin(), observed.end(), std::uint8_t{1});
+    if (const auto* const texture = patches->texture_between_patches()) {
+      document["texture_size"] = {texture->atlas().width, texture->atlas().height};
+      document["texels_stored"] = texture->texel_count().stored;
+      document["texels_offered"] = texture->texel_count().offered;
+    }
     document["coefficients_per_patch"] =
         static_cast<double>(light_field.coefficient_count()) /
         static_cast<double>(std::max<std::size_t>(1, patches->patch_count()));

@@ -20,8 +20,10 @@ const std::vector<std::pair<std::string, VisibilityMethod>> kVisibilities{
     {"raster", VisibilityMethod::raster},
     {"rays", VisibilityMethod::rays},
     {"depth", VisibilityMethod::depth}};
-const std::vector<std::pair<std::string, Patches>> kPatches{{"vertex", Patches::vertex},
-                                                            {"texel", Patches::texel}};
+const std::vector<std::pair<std::string, Patches>> kPatches{
+    {"vertex", Patches::vertex}, {"texel", Patches::texel}, {"detail", Patches::detail}};
+constexpr const char* kVertexPatches = "sparse";
+constexpr const char* kTexture = "detail";
 
 template <typename Value>
 std::string word_for(const std::vector<std::pair<std::string, Value>>& words, Value value) {
@@ -29,6 +31,18 @@ std::string word_for(const std::vector<std::pair<std::string, Value>>& words, Va
     if (candidate == value) return word;
   }
   return {};
+}
+
+/// `--patches detail` and the representation of this name mean each other.
+void reconcile_patches(pipeline::ReconstructionOptions& fit) {
+  const bool wants_texture = fit.patches == Patches::detail;
+  if (wants_texture && fit.representation == kVertexPatches) fit.representation = kTexture;
+  const bool has_texture = fit.representation == kTexture;
+  if ((wants_texture && !has_texture) || (has_texture && fit.patches == Patches::texel)) {
+    throw UsageError("--patches " + word_for(kPatches, fit.patches) +
+                     " contradicts --representation " + fit.representation);
+  }
+  if (has_texture) fit.patches = Patches::detail;
 }
 
 }  // namespace
@@ -78,7 +92,8 @@ void add_replay_options(Command command, ReplayOptions& options) {
   command.choice(
       "--patches", fit.patches, kPatches,
       "vertex: one patch per vertex; texel: the mesh is subdivided to the footprint of a "
-      "pixel first");
+      "pixel first; detail: one per vertex and a texture as fine as the images");
+  command.after_parsing([&fit] { reconcile_patches(fit); });
   command.option("--texel-px", fit.texel_px, "With --patches texel: longest edge, pixels")
       .positive()
       .show_default();

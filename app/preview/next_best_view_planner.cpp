@@ -4,6 +4,7 @@
 #include "core/mesh/bounds.h"
 #include "core/visibility/ray_caster.h"
 #include "fitting/guidance/candidate_views.h"
+#include "render/preview/score_shader.h"
 
 #include <Eigen/Geometry>
 
@@ -25,27 +26,24 @@ constexpr int kRestPerLook = 2;  // nothing can be said before all places have b
 // Root mean square error in directions seen before that paints a patch in full colour, sRGB.
 constexpr float kFullMisfit = 0.12f;
 
-/// Scores in [0, 1]. Views: deviation to expect from missing views, as a share of what a patch that
-/// nobody has seen has. Misfit: deviation in directions that were seen.
+/// Scores in [0, 1] of the patches that were seen. Views: deviation to expect from missing views,
+/// as a share of what a patch that nobody has seen has. Misfit: deviation in directions that were
+/// seen.
 PatchScores scores_of(const guidance::ViewUtility& utility,
                       const std::vector<float>& unseen_direction_error,
                       const std::vector<guidance::DirectionCells>& reachable) {
   PatchScores scores;
   const std::size_t count = reachable.size();
-  scores.needs_views.resize(count);
-  scores.misfit.resize(count);
+  scores.needs_views.assign(count, render::kUnseenScore);
+  scores.misfit.assign(count, render::kUnseenScore);
   const float typical = utility.typical_unseen_direction_error();
   for (std::size_t i = 0; i < count; ++i) {
-    const bool unseen = utility.patches()[i].samples == 0;
-    scores.needs_views[i] =
-        unseen
-            ? 1.0f
-            : std::min(1.0f,
-                       std::sqrt(guidance::missing_variance(utility.patches()[i].seen, reachable[i],
-                                                            unseen_direction_error[i]) /
-                                 typical));
-    scores.misfit[i] =
-        unseen ? 0.0f : std::min(1.0f, std::sqrt(utility.seen_direction_error(i)) / kFullMisfit);
+    const guidance::PatchKnowledge& patch = utility.patches()[i];
+    if (patch.samples == 0) continue;
+    const float missing =
+        guidance::missing_variance(patch.seen, reachable[i], unseen_direction_error[i]);
+    scores.needs_views[i] = std::min(1.0f, std::sqrt(missing / typical));
+    scores.misfit[i] = std::min(1.0f, std::sqrt(utility.seen_direction_error(i)) / kFullMisfit);
   }
   return scores;
 }

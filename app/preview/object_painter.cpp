@@ -16,11 +16,12 @@ constexpr std::size_t kPiece = 256;  // elements sent between two looks at the b
 constexpr int kThreads = 1;          // the fit has the others
 
 // Views: from quiet teal to red. Misfit: from grey to violet, so that nobody takes one for the
-// other.
+// other. What nobody has seen is on neither: blue.
+const Eigen::Vector3f kUnseen{0.15f, 0.24f, 0.62f};
 const render::ScorePalette kNeedsViews{
-    {0.20f, 0.42f, 0.44f}, {0.91f, 0.74f, 0.40f}, {0.82f, 0.25f, 0.25f}};
+    {0.20f, 0.42f, 0.44f}, {0.91f, 0.74f, 0.40f}, {0.82f, 0.25f, 0.25f}, kUnseen};
 const render::ScorePalette kMisfit{
-    {0.33f, 0.35f, 0.38f}, {0.56f, 0.46f, 0.76f}, {0.95f, 0.55f, 0.93f}};
+    {0.33f, 0.35f, 0.38f}, {0.56f, 0.46f, 0.76f}, {0.95f, 0.55f, 0.93f}, kUnseen};
 
 std::size_t slot_of(Layer layer) {
   return static_cast<std::size_t>(layer);
@@ -38,14 +39,18 @@ std::array<std::array<float, 3>, 3> scale_of(Layer layer) {
   return scale;
 }
 
+std::array<float, 3> unseen_colour() {
+  return {kUnseen.x(), kUnseen.y(), kUnseen.z()};
+}
+
 ObjectPainter::ObjectPainter(render::Context& context, const render::gl::Functions& gl,
                              const core::Mesh& mesh)
     : context_(context),
       gl_(gl),
       mesh_(mesh),
       bounds_(core::bounds_of(mesh).cast<double>()),
-      scores_{std::vector<float>(mesh.positions.size(), 1.0f),
-              std::vector<float>(mesh.positions.size(), 0.0f)} {}
+      scores_{std::vector<float>(mesh.positions.size(), render::kUnseenScore),
+              std::vector<float>(mesh.positions.size(), render::kUnseenScore)} {}
 
 void ObjectPainter::show(const fitting::LightField& light_field) {
   radiance_ = render::make_renderer(context_, mesh_, light_field, kThreads);

@@ -17,7 +17,7 @@
 
 namespace sheen::app {
 
-/// Scores of every patch for the two heat maps, [0, 1].
+/// Scores of every patch for the two heat maps, [0, 1] or render::kUnseenScore.
 struct PatchScores {
   std::vector<float> needs_views;
   std::vector<float> misfit;
@@ -25,6 +25,8 @@ struct PatchScores {
 
 /// Colours of the two scales, for legends: 0, 1/2, 1 as sRGB.
 std::array<std::array<float, 3>, 3> scale_of(Layer layer);
+/// Colour of patches that nobody has seen, on both.
+std::array<float, 3> unseen_colour();
 
 /// The object in every layer, on the GPU. Changes are sent in pieces, so that no redraw waits long
 /// for them. All calls with the context current, on one thread.

@@ -72,7 +72,19 @@ void layer_choice(const ViewState& state, bool live, Clicks& clicks) {
   }
 }
 
-/// Colours of the chosen score and what its ends mean.
+/// A square of a colour and what it means.
+void swatch(const std::array<float, 3>& colour, const std::string& words) {
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  const float side = 0.8f * ImGui::GetFontSize();
+  ImGui::GetWindowDrawList()->AddRectFilled(
+      from, {from.x + side, from.y + side},
+      ImGui::GetColorU32({colour[0], colour[1], colour[2], 1}));
+  ImGui::Dummy({side, side});
+  ImGui::SameLine();
+  text(theme::kQuiet, words);
+}
+
+/// Colours of the chosen score, what its ends mean, and the colour of what is not on it.
 void legend(Layer layer) {
   if (layer != Layer::needs_views && layer != Layer::misfit) return;
   const auto scale = scale_of(layer);
@@ -90,7 +102,8 @@ void legend(Layer layer) {
   }
   ImGui::Dummy({width, height});
   const bool views = layer == Layer::needs_views;
-  row(views ? "well seen" : "fits", views ? "not seen" : "error 12 %", theme::kQuiet);
+  row(views ? "little error" : "fits", views ? "much to expect" : "error 12 %", theme::kQuiet);
+  swatch(unseen_colour(), "not seen yet");
 }
 
 void phase_line(const LiveStatus& live, const theme::Fonts& fonts) {

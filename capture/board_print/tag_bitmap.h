@@ -14,7 +14,8 @@ struct TagBitmap {
   std::vector<bool> black;     ///< row-major, modules * modules
 
   [[nodiscard]] bool is_black(int row, int column) const {
-    return black[static_cast<std::size_t>(row * modules + column)];
+    return black[static_cast<std::size_t>(row) * static_cast<std::size_t>(modules) +
+                 static_cast<std::size_t>(column)];
   }
 };
 

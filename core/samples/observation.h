@@ -20,6 +20,7 @@ struct Observation {
   Eigen::Isometry3d camera_from_object;  ///< metres
   const VertexView& view;                ///< every vertex of the mesh as this camera sees it
   const SampleBatch& samples;            ///< radiance at the vertices that are seen
+  double gain = 1;                       ///< the image's exposure: samples are its values over this
 };
 
 }  // namespace sheen::core

@@ -25,11 +25,18 @@ class ZBuffer {
   ZBuffer(const Mesh& mesh, int threads, const RasterKernels& kernels);
 
   /// Draws the part of the image that `box` holds, of a view from `eye` (object frame, metres).
-  /// False where too many triangles are large: then nothing is promised.
+  /// False where too many triangles are large to be listed: all are drawn, with straight edges.
   bool draw(const VertexView& view, const Eigen::Vector3f& eye, const PixelBox& box);
 
   /// Drawn triangles wider or higher than kLarge_px, and all with a corner that has no pixel.
   [[nodiscard]] const std::vector<LargeTriangle>& large_triangles() const { return large_; }
+
+  /// Inverse depth at a pixel of the image within the box, 1/m; 0 where nothing is.
+  [[nodiscard]] float at(int x_px, int y_px) const {
+    const auto x = static_cast<std::size_t>(x_px - static_cast<int>(left_px_));
+    const auto y = static_cast<std::size_t>(y_px - static_cast<int>(top_px_));
+    return maps_.front().data()->inverse_depth[y * row() + x];
+  }
 
   /// Least and greatest inverse depth of the four pixels around a position within the box.
   struct Range {

@@ -13,6 +13,7 @@ constexpr const char* kHarmonics = "Spherical harmonics";
 constexpr const char* kPaper = "IWLS as published";
 constexpr const char* kRidge = "IWLS with ridge";
 constexpr const char* kSparse = "Sparse";
+constexpr const char* kTexture = "Sparse with a texture";
 
 /// One line each.
 std::vector<Candidate> known_candidates() {
@@ -34,6 +35,7 @@ std::vector<Candidate> known_candidates() {
       {"sparse", "sparse", kSparse, "sparse"},
       {"sparse-0.01", "sparse 0.01", kSparse, "sparse", {{"tolerance", "0.01"}}},
       {"sparse-0.005", "sparse 0.005", kSparse, "sparse", {{"tolerance", "0.005"}}},
+      {"detail", "detail texture", kTexture, "detail"},
   };
 }
 

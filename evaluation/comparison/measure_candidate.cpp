@@ -3,10 +3,12 @@
 
 #include "core/diagnostics/cpu_clock.h"
 #include "core/diagnostics/stage_timer.h"
+#include "core/mesh/bounds.h"
 #include "evaluation/views/evaluate_views.h"
 #include "fitting/descriptor.h"
 #include "fitting/model_file/model_file.h"
 #include "fitting/patch_light_field.h"
+#include "pipeline/texel_size.h"
 #include "render/renderer.h"
 
 namespace sheen::evaluation {
@@ -44,6 +46,17 @@ std::uintmax_t bytes_of(const core::Mesh& mesh, const fitting::LightField& light
   return bytes;
 }
 
+/// What a pixel covers on the object.
+double texel_size_m(const Observations& observations) {
+  std::vector<Eigen::Isometry3d> poses;
+  for (const pipeline::IntegratedView& view : observations.views) {
+    poses.push_back(view.camera_from_object);
+  }
+  return pipeline::pixel_footprint_m(poses,
+                                     core::bounds_of(observations.mesh).center().cast<double>(),
+                                     observations.session.camera.intrinsics().focal_px.x());
+}
+
 }  // namespace
 
 Measurement measure_candidate(const Candidate& candidate, const Observations& observations,
@@ -51,8 +64,12 @@ Measurement measure_candidate(const Candidate& candidate, const Observations& ob
                               int threads, pipeline::ProgressSink& sink) {
   // Fit.
   Measurement measurement;
+  fitting::OptionValues values = candidate.options;
+  if (pipeline::asks_texel_size(candidate.representation, values)) {
+    pipeline::set_texel_size(texel_size_m(observations), values);
+  }
   const auto fitter =
-      fitting::make_fitter(candidate.representation, observations.mesh, candidate.options, threads);
+      fitting::make_fitter(candidate.representation, observations.mesh, values, threads);
   const double begin_cpu_ms = core::process_cpu_ms();
   integrate_all(observations, threads, *fitter, sink);
   fitter->finish();

@@ -20,6 +20,7 @@ namespace sheen::fitting::iwls::SHEEN_LANES {
 template <typename Real, std::size_t kTerms>
 class QuadPatchFit {
  public:
+  // refit() fills refit_all_. NOLINTNEXTLINE(cppcoreguidelines-pro-type-member-init)
   SHEEN_INLINE QuadPatchFit(const QuadFit<Real>& fit, const QuadPatch<Real>& patch)
       : fit_(fit), patch_(patch) {}
 

@@ -22,6 +22,8 @@ inline constexpr unsigned kUnsignedInt = 5125;
 inline constexpr unsigned kUnsignedShort = 5123;
 inline constexpr unsigned kArrayBuffer = 34962;
 inline constexpr unsigned kElementArrayBuffer = 34963;
+inline constexpr unsigned kLinear = 9729;
+inline constexpr unsigned kClampToEdge = 33071;
 
 /// A glTF document with one buffer while it is being written.
 struct DocumentBuilder {

@@ -16,7 +16,8 @@ struct Model {
   std::unique_ptr<const LightField> light_field;
 };
 
-/// Bytes of a light field in a model file: those of its arrays, without mesh and names.
+/// Bytes of a light field in a model file: those of its arrays and of its texture's image, without
+/// mesh, places on the texture and names.
 std::size_t byte_size(const LightField& light_field);
 
 /// Writes a binary glTF 2.0 file with the extension SHEEN_surface_light_field (docs/formats.md,

@@ -15,6 +15,8 @@
 
 namespace sheen::fitting {
 
+class SurfaceTexture;
+
 /// What is wrong with a model file, without its name: `read_model` adds it.
 class ModelFault : public std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -28,6 +30,9 @@ struct ModelPart {
   std::map<std::string, std::span<const std::byte>> arrays;
   /// Of patches only: one flag each, 1 where the patch was seen in the fit.
   std::span<const std::byte> observed{};
+  /// Colours between the patches, or null; in the file it is an image that every viewer shows.
+  /// Belongs to the light field or, while a file is read, to the reader.
+  const SurfaceTexture* texture = nullptr;
   /// Keeps alive what `encode` had to make for the arrays.
   std::shared_ptr<const void> owner;
 };

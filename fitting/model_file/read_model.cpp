@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "core/atlas/atlas_vertices.h"
 #include "core/diagnostics/error.h"
 #include "fitting/descriptor.h"
 #include "fitting/model_file/checksum.h"
@@ -6,12 +7,14 @@
 #include "fitting/model_file/glb.h"
 #include "fitting/model_file/model_file.h"
 #include "fitting/model_file/model_part.h"
+#include "fitting/model_file/texture_image.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <optional>
 
 namespace sheen::fitting {
 namespace {
@@ -96,8 +99,12 @@ void check_mesh(const core::Mesh& mesh) {
   }
 }
 
+const json& primitive_of(const Glb& glb) {
+  return element(element(glb.document, "meshes", 0), "primitives", 0);
+}
+
 core::Mesh read_mesh_part(const Glb& glb) {
-  const json& primitive = element(element(glb.document, "meshes", 0), "primitives", 0);
+  const json& primitive = primitive_of(glb);
   const json& attributes = required(primitive, "attributes");
   using Triangle = decltype(core::Mesh::triangles)::value_type;
   core::Mesh mesh;
@@ -106,6 +113,55 @@ core::Mesh read_mesh_part(const Glb& glb) {
   mesh.triangles = read_accessor<Triangle>(glb, primitive, "indices", kUnsignedInt, "SCALAR", 3);
   check_mesh(mesh);
   return mesh;
+}
+
+/// Vertices that repeat earlier ones, because the texture has a seam there: which ones they repeat.
+std::vector<std::uint32_t> read_copies(const Glb& glb, const json& extension,
+                                       const core::Mesh& mesh) {
+  if (!extension.contains("copies")) return {};
+  const auto bytes = view_bytes(glb, required_size(extension, "copies"));
+  std::vector<std::uint32_t> copies(bytes.size() / sizeof(std::uint32_t));
+  if (copies.size() >= mesh.positions.size() || bytes.size() % sizeof(std::uint32_t) != 0) {
+    throw ModelFault("it does not have as many vertices as it says it repeats");
+  }
+  std::memcpy(copies.data(), bytes.data(), bytes.size());
+  const std::size_t own = mesh.positions.size() - copies.size();
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    if (copies[i] >= own || mesh.positions[copies[i]] != mesh.positions[own + i] ||
+        mesh.normals[copies[i]] != mesh.normals[own + i]) {
+      throw ModelFault("a vertex does not repeat the one that it should");
+    }
+  }
+  return copies;
+}
+
+/// Takes the vertices that repeat others out again.
+void join_vertices(const std::vector<std::uint32_t>& copies, core::Mesh& mesh) {
+  const std::size_t own = mesh.positions.size() - copies.size();
+  mesh.positions.resize(own);
+  mesh.normals.resize(own);
+  for (auto& triangle : mesh.triangles) {
+    for (std::uint32_t& vertex : triangle) {
+      if (vertex >= own) vertex = copies[vertex - own];
+    }
+  }
+}
+
+/// The texture, if there is one; `mesh` becomes the one that was written.
+std::optional<SurfaceTexture> read_texture(const Glb& glb, const json& extension,
+                                           core::Mesh& mesh) {
+  if (!extension.contains("image")) return std::nullopt;
+  const json& attributes = required(primitive_of(glb), "attributes");
+  const auto places =
+      read_accessor<core::AtlasPoint>(glb, attributes, "TEXCOORD_0", kUnsignedShort, "VEC2", 1);
+  if (places.size() != mesh.positions.size()) {
+    throw ModelFault("it has not as many places on its texture as positions");
+  }
+  const json& image = element(glb.document, "images", required_size(extension, "image"));
+  SurfaceTexture texture = decode_texture(view_bytes(glb, required_size(image, "bufferView")),
+                                          core::corners_of(places, mesh.triangles));
+  join_vertices(read_copies(glb, extension, mesh), mesh);
+  return texture;
 }
 
 void check_conventions(const json& extension) {
@@ -146,13 +202,11 @@ ModelPart read_part(const Glb& glb, const json& extension) {
   return part;
 }
 
-std::unique_ptr<const LightField> read_light_field(const Glb& glb, const core::Mesh& mesh) {
-  const json& extensions = required(glb.document, "extensions");
-  const json& extension = required(extensions, kExtension);
-  check_conventions(extension);
+std::unique_ptr<const LightField> decode_light_field(const json& extension, const ModelPart& part,
+                                                     const core::Mesh& mesh) {
   const std::string name = required_string(extension, "representation");
   for (const Descriptor* descriptor : representations()) {
-    if (descriptor->name == name) return descriptor->decode(read_part(glb, extension), mesh);
+    if (descriptor->name == name) return descriptor->decode(part, mesh);
   }
   throw ModelFault("its representation \"" + name.substr(0, 40) + "\" is unknown");
 }
@@ -167,8 +221,13 @@ Model parse_model(std::string file) {
     throw ModelFault("its checksum does not fit: the file was altered");
   Model model;
   model.mesh = read_mesh_part(glb);
-  model.mesh.offset = read_offset(extensions[kExtension]);
-  model.light_field = read_light_field(glb, model.mesh);
+  const json& extension = required(extensions, kExtension);
+  model.mesh.offset = read_offset(extension);
+  check_conventions(extension);
+  const std::optional<SurfaceTexture> texture = read_texture(glb, extension, model.mesh);
+  ModelPart part = read_part(glb, extension);
+  if (texture) part.texture = &*texture;
+  model.light_field = decode_light_field(extension, part, model.mesh);
   return model;
 }
 

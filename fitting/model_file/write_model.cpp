@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "core/atlas/atlas_vertices.h"
 #include "core/diagnostics/error.h"
 #include "core/files/write_file.h"
 #include "fitting/descriptor.h"
@@ -7,6 +8,7 @@
 #include "fitting/model_file/glb.h"
 #include "fitting/model_file/model_file.h"
 #include "fitting/model_file/model_part.h"
+#include "fitting/model_file/texture_image.h"
 
 #include <algorithm>
 #include <array>
@@ -43,10 +45,22 @@ std::vector<std::array<std::uint16_t, 4>> linear_colours(const std::vector<Eigen
   return colours;
 }
 
-// What any glTF viewer shows: the mesh with its mean colours, unlit.
-void add_mesh(const core::Mesh& mesh, const LightField& light_field, DocumentBuilder& builder) {
+std::size_t add_colours(const std::vector<Eigen::Vector3f>& srgb, DocumentBuilder& builder) {
+  const std::size_t colours = builder.add_accessor(bytes_of(linear_colours(srgb)), kArrayBuffer,
+                                                   kUnsignedShort, "VEC4", srgb.size());
+  builder.document["accessors"][colours]["normalized"] = true;
+  return colours;
+}
+
+std::size_t add_places(const std::vector<core::AtlasPoint>& places, DocumentBuilder& builder) {
+  const std::size_t accessor =
+      builder.add_accessor(bytes_of(places), kArrayBuffer, kUnsignedShort, "VEC2", places.size());
+  builder.document["accessors"][accessor]["normalized"] = true;
+  return accessor;
+}
+
+json add_vertices(const core::Mesh& mesh, DocumentBuilder& builder) {
   const std::size_t vertices = mesh.positions.size();
-  json attributes;
   const std::size_t position =
       builder.add_accessor(bytes_of(mesh.positions), kArrayBuffer, kFloat, "VEC3", vertices);
   Eigen::Vector3f lowest = mesh.positions.front();
@@ -57,20 +71,61 @@ void add_mesh(const core::Mesh& mesh, const LightField& light_field, DocumentBui
   }
   builder.document["accessors"][position]["min"] = as_json(lowest);
   builder.document["accessors"][position]["max"] = as_json(highest);
-  attributes["POSITION"] = position;
-  attributes["NORMAL"] =
+  const std::size_t normal =
       builder.add_accessor(bytes_of(mesh.normals), kArrayBuffer, kFloat, "VEC3", vertices);
-  const std::size_t colour =
-      builder.add_accessor(bytes_of(linear_colours(light_field.vertex_colours(mesh))), kArrayBuffer,
-                           kUnsignedShort, "VEC4", vertices);
-  builder.document["accessors"][colour]["normalized"] = true;
-  attributes["COLOR_0"] = colour;
+  return {{"POSITION", position}, {"NORMAL", normal}};
+}
+
+void add_triangles(const core::Mesh& mesh, const json& attributes, DocumentBuilder& builder) {
   const std::size_t indices =
       builder.add_accessor(bytes_of(mesh.triangles), kElementArrayBuffer, kUnsignedInt, "SCALAR",
                            3 * mesh.triangles.size());
   builder.document["meshes"] = {
       {{"primitives",
         {{{"attributes", attributes}, {"indices", indices}, {"material", 0}, {"mode", 4}}}}}};
+}
+
+/// What any glTF viewer shows: the mesh with its mean colours, unlit.
+void add_coloured_mesh(const core::Mesh& mesh, const LightField& light_field,
+                       DocumentBuilder& builder) {
+  json attributes = add_vertices(mesh, builder);
+  attributes["COLOR_0"] = add_colours(light_field.vertex_colours(mesh), builder);
+  add_triangles(mesh, attributes, builder);
+}
+
+core::Mesh mesh_of(const core::Mesh& mesh, const core::AtlasVertices& split) {
+  core::Mesh result;
+  for (const std::uint32_t vertex : split.vertex) {
+    result.positions.push_back(mesh.positions[vertex]);
+    result.normals.push_back(mesh.normals[vertex]);
+  }
+  result.triangles = split.triangles;
+  return result;
+}
+
+/// The same of a light field that has a texture: the mesh with it, vertices repeated where the
+/// texture has a seam.
+void add_textured_mesh(const core::Mesh& mesh, const SurfaceTexture& texture,
+                       DocumentBuilder& builder) {
+  const core::AtlasVertices split = core::split_at_seams(mesh, texture.atlas());
+  const core::Mesh drawn = mesh_of(mesh, split);
+  json attributes = add_vertices(drawn, builder);
+  attributes["TEXCOORD_0"] = add_places(split.place, builder);
+  add_triangles(drawn, attributes, builder);
+  json& document = builder.document;
+  const std::size_t image = builder.add_view(bytes_of(encode_texture(texture)));
+  document["images"] = {{{"bufferView", image}, {"mimeType", "image/png"}}};
+  document["samplers"] = {{{"magFilter", kLinear},
+                           {"minFilter", kLinear},
+                           {"wrapS", kClampToEdge},
+                           {"wrapT", kClampToEdge}}};
+  document["textures"] = {{{"sampler", 0}, {"source", 0}}};
+  document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", 0}};
+  json& extension = document["extensions"][kExtension];
+  extension["image"] = 0;
+  const auto copies = std::span(split.vertex).subspan(mesh.positions.size());
+  // glTF knows no empty bufferView.
+  if (!copies.empty()) extension["copies"] = builder.add_view(std::as_bytes(copies));
 }
 
 void add_scene(json& document) {
@@ -94,15 +149,19 @@ void add_offset(const Eigen::Vector3d& offset, json& document) {
   document["extensions"][kExtension]["offset"] = numbers;
 }
 
-void add_light_field(const LightField& light_field, DocumentBuilder& builder) {
-  const ModelPart part = representation_named(light_field.representation()).encode(light_field);
+void add_light_field(const LightField& light_field, const ModelPart& part,
+                     DocumentBuilder& builder) {
   json arrays = json::object();
   for (const auto& [name, bytes] : part.arrays) arrays[name] = builder.add_view(bytes);
   json& extension = builder.document["extensions"][kExtension];
-  extension = {{"version", kExtensionVersion},  {"representation", light_field.representation()},
-               {"directionMap", kDirectionMap}, {"tangentFrame", kTangentFrame},
-               {"colorSpace", kColourSpace},    {"checksum", kChecksumPlaceholder},
-               {"parameters", part.parameters}, {"arrays", std::move(arrays)}};
+  extension.update({{"version", kExtensionVersion},
+                    {"representation", light_field.representation()},
+                    {"directionMap", kDirectionMap},
+                    {"tangentFrame", kTangentFrame},
+                    {"colorSpace", kColourSpace},
+                    {"checksum", kChecksumPlaceholder},
+                    {"parameters", part.parameters},
+                    {"arrays", std::move(arrays)}});
   if (!part.observed.empty()) extension["observed"] = builder.add_view(part.observed);
 }
 
@@ -112,6 +171,7 @@ std::size_t byte_size(const LightField& light_field) {
   const ModelPart part = representation_named(light_field.representation()).encode(light_field);
   std::size_t bytes = part.observed.size();
   for (const auto& [name, array] : part.arrays) bytes += array.size();
+  if (part.texture != nullptr) bytes += encode_texture(*part.texture).size();
   return bytes;
 }
 
@@ -120,8 +180,13 @@ void write_model(const std::filesystem::path& path, const core::Mesh& mesh,
   assert(!mesh.positions.empty() && !mesh.triangles.empty());
   DocumentBuilder builder;
   add_scene(builder.document);
-  add_mesh(mesh, light_field, builder);
-  add_light_field(light_field, builder);
+  const ModelPart part = representation_named(light_field.representation()).encode(light_field);
+  if (part.texture != nullptr) {
+    add_textured_mesh(mesh, *part.texture, builder);
+  } else {
+    add_coloured_mesh(mesh, light_field, builder);
+  }
+  add_light_field(light_field, part, builder);
   add_offset(mesh.offset, builder.document);
   builder.document["buffers"] = {{{"byteLength", builder.binary.size()}}};
   std::optional<std::string> bytes = glb_bytes(builder.document, builder.binary);

@@ -73,7 +73,7 @@ void wendland(const Column& u, const Column& v, const Column& weight, std::size_
 
 SHEEN_FOR_EVERY_PROCESSOR
 void kernel_density(const Column& u, const Column& v, std::size_t rows, float reach, Column& out) {
-  Column near;
+  Column near;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
   const auto all = static_cast<float>(rows);
   for (std::size_t i = 0; i < rows; ++i) {
     relative_distances(u, v, rows, u.row[i], v.row[i], reach, near);

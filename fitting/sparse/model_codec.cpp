@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/sparse/model_codec.h"
 
-#include "fitting/sparse/light_field_model.h"
-
 #include <bitset>
 #include <cstring>
 #include <utility>
@@ -29,11 +27,17 @@ json atoms_as_json() {
   return list;
 }
 
-void pack(const PatchModel& patch, PackedArrays& packed) {
+/// Terms that a patch has in the file.
+std::size_t stored_terms(const PatchModel& patch, SingleColours single_colours) {
+  const bool is_zero = single_colours == SingleColours::zero && patch.term_count() == 1;
+  return is_zero ? 0 : patch.term_count();
+}
+
+void pack(const PatchModel& patch, SingleColours single_colours, PackedArrays& packed) {
   packed.shapes.push_back(static_cast<std::uint8_t>(
       patch.rbf_count | (patch.base_terms == kLinearBase ? kLinearBit : 0u)));
   for (std::size_t i = 0; i < patch.rbf_count; ++i) packed.rbfs.push_back(patch.atom[i]);
-  for (std::size_t term = 0; term < patch.term_count(); ++term) {
+  for (std::size_t term = 0; term < stored_terms(patch, single_colours); ++term) {
     for (const float channel : patch.coefficient[term]) {
       packed.coefficients.emplace_back(channel);
     }
@@ -63,7 +67,8 @@ void read_atoms(std::span<const std::byte> codes, PatchModel& patch) {
 }
 
 void read_coefficients(std::span<const Eigen::half> values, PatchModel& patch) {
-  for (std::size_t term = 0; term < patch.term_count(); ++term) {
+  patch.coefficient[0].setZero();
+  for (std::size_t term = 0; 3 * term < values.size(); ++term) {
     patch.coefficient[term] = {static_cast<float>(values[3 * term]),
                                static_cast<float>(values[3 * term + 1]),
                                static_cast<float>(values[3 * term + 2])};
@@ -72,23 +77,26 @@ void read_coefficients(std::span<const Eigen::half> values, PatchModel& patch) {
 
 }  // namespace
 
-ModelPart encode_model(const LightField& light_field) {
-  const auto& model = dynamic_cast<const LightFieldModel&>(light_field);
+ModelPart encode_patches(const LightFieldModel& model, SingleColours single_colours) {
   const auto packed = std::make_shared<PackedArrays>();
   packed->shapes.reserve(model.patch_count());
-  for (std::size_t i = 0; i < model.patch_count(); ++i) pack(model.patch(i), *packed);
+  for (std::size_t i = 0; i < model.patch_count(); ++i)
+    pack(model.patch(i), single_colours, *packed);
   ModelPart part;
   part.observed = std::as_bytes(std::span(model.observed()));
   part.parameters = {{"atoms", atoms_as_json()}};
   part.arrays["shapes"] = std::as_bytes(std::span(packed->shapes));
   // glTF knows no empty bufferView.
   if (!packed->rbfs.empty()) part.arrays["bumps"] = std::as_bytes(std::span(packed->rbfs));
-  part.arrays["coefficients"] = std::as_bytes(std::span(packed->coefficients));
+  if (!packed->coefficients.empty()) {
+    part.arrays["coefficients"] = std::as_bytes(std::span(packed->coefficients));
+  }
   part.owner = packed;
   return part;
 }
 
-std::unique_ptr<const LightField> decode_model(const ModelPart& part, const core::Mesh& mesh) {
+LightFieldModel decode_patches(const ModelPart& part, const core::Mesh& mesh,
+                               SingleColours single_colours) {
   auto observed = required_observed(part, mesh.positions.size());
   if (required(part.parameters, "atoms") != atoms_as_json()) {
     throw ModelFault("its \"atoms\" are not those of this version of sheen");
@@ -100,26 +108,36 @@ std::unique_ptr<const LightField> decode_model(const ModelPart& part, const core
   for (const std::byte code : shapes) {
     const PatchModel patch = shape_from(code);
     rbf_count += patch.rbf_count;
-    term_count += patch.term_count();
+    term_count += stored_terms(patch, single_colours);
   }
   const auto rbfs =
       rbf_count > 0 ? required_bytes(part, "bumps", 2 * rbf_count) : std::span<const std::byte>();
   const std::vector<Eigen::half> coefficients =
-      required_halves(part, "coefficients", 3 * term_count);
+      term_count > 0 ? required_halves(part, "coefficients", 3 * term_count)
+                     : std::vector<Eigen::half>();
   // Take the patches out one after the other.
-  auto model = std::make_unique<LightFieldModel>(observed.size());
+  LightFieldModel model(observed.size());
   std::size_t rbf = 0;
   std::size_t term = 0;
   for (std::size_t i = 0; i < observed.size(); ++i) {
     PatchModel patch = shape_from(shapes[i]);
     read_atoms(rbfs.subspan(2 * rbf, 2 * patch.rbf_count), patch);
-    read_coefficients(std::span(coefficients).subspan(3 * term, 3 * patch.term_count()), patch);
-    model->store(i, patch);
-    model->store_observed(i, observed[i] != 0);
+    const std::size_t terms = stored_terms(patch, single_colours);
+    read_coefficients(std::span(coefficients).subspan(3 * term, 3 * terms), patch);
+    model.store(i, patch);
+    model.store_observed(i, observed[i] != 0);
     rbf += patch.rbf_count;
-    term += patch.term_count();
+    term += terms;
   }
   return model;
+}
+
+ModelPart encode_model(const LightField& light_field) {
+  return encode_patches(dynamic_cast<const LightFieldModel&>(light_field), SingleColours::stored);
+}
+
+std::unique_ptr<const LightField> decode_model(const ModelPart& part, const core::Mesh& mesh) {
+  return std::make_unique<LightFieldModel>(decode_patches(part, mesh, SingleColours::stored));
 }
 
 }  // namespace sheen::fitting::sparse

@@ -63,6 +63,11 @@ DirectedColour SampleStore::at(std::size_t idx, const SamplePool& pool) const {
           {colour(block.r[i]), colour(block.g[i]), colour(block.b[i])}};
 }
 
+float SampleStore::count(std::size_t idx, const SamplePool& pool) const {
+  assert(idx < size_);
+  return static_cast<float>(block_of(idx, pool).count[idx % SampleBlock::kSamples]);
+}
+
 std::span<const DirectedColour> SampleStore::read(const SamplePool& pool,
                                                   std::span<DirectedColour> samples) const {
   for (std::size_t idx = 0; idx < size_; ++idx) samples[idx] = at(idx, pool);

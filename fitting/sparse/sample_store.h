@@ -49,6 +49,8 @@ class SampleStore {
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] DirectedColour at(std::size_t idx, const SamplePool& pool) const;
+  /// Samples that were averaged into this one, 1 to 255.
+  [[nodiscard]] float count(std::size_t idx, const SamplePool& pool) const;
   /// Reads all of them; `samples` has room for kMaxStoredSamples.
   std::span<const DirectedColour> read(const SamplePool& pool,
                                        std::span<DirectedColour> samples) const;

@@ -54,9 +54,9 @@ struct Request {
   }
 };
 
-class SparseFitter final : public PatchFitter {
+class SparsePatches final : public SparseFitter {
  public:
-  SparseFitter(const core::VertexNeighbours& neighbours, const Options& options, int threads)
+  SparsePatches(const core::VertexNeighbours& neighbours, const Options& options, int threads)
       : neighbours_(neighbours),
         options_(options),
         threads_(threads),
@@ -67,7 +67,7 @@ class SparseFitter final : public PatchFitter {
 
   const ModelUpdate& integrate_samples(const core::SampleBatch& batch) override;
   const ModelUpdate& finish() override;
-  [[nodiscard]] const PatchLightField& light_field() const override { return model_; }
+  [[nodiscard]] const LightFieldModel& light_field() const override { return model_; }
   [[nodiscard]] FitStatistics statistics() const override {
     FitStatistics statistics = statistics_;
     statistics.tolerance = tolerance_;
@@ -75,6 +75,7 @@ class SparseFitter final : public PatchFitter {
   }
   [[nodiscard]] std::optional<float> predicted_error(std::size_t patch_idx,
                                                      const Eigen::Vector2f& uv) const override;
+  [[nodiscard]] Eigen::Vector3f mean_over_views(std::size_t patch_idx) const override;
 
  private:
   void update_tolerance();
@@ -103,7 +104,7 @@ class SparseFitter final : public PatchFitter {
 };
 
 // Noise is no reason for a term: two deviations keep out all but the rarest.
-void SparseFitter::update_tolerance() {
+void SparsePatches::update_tolerance() {
   constexpr float deviations = 2.0f;
   constexpr float least = 0.01f;  // of the best camera poses and meshes are not exact either
   constexpr float most = 0.05f;
@@ -113,8 +114,8 @@ void SparseFitter::update_tolerance() {
   }
 }
 
-bool SparseFitter::take(std::size_t patch_idx, const SelectedModel& selected,
-                        std::span<const DirectedColour> samples) {
+bool SparsePatches::take(std::size_t patch_idx, const SelectedModel& selected,
+                         std::span<const DirectedColour> samples) {
   PatchState& state = states_[patch_idx];
   state.expected_error = selected.expected_error;
   state.refit_priority = 0;
@@ -127,8 +128,8 @@ bool SparseFitter::take(std::size_t patch_idx, const SelectedModel& selected,
 
 // Most samples of a slowly moving camera are averaged into a kept one and end here. Returns whether
 // the model changed.
-bool SparseFitter::integrate_sample(std::size_t patch_idx, const DirectedColour& sample,
-                                    NoiseEstimate& noise) {
+bool SparsePatches::integrate_sample(std::size_t patch_idx, const DirectedColour& sample,
+                                     NoiseEstimate& noise) {
   // Keep the sample.
   constexpr float saturated = 254.0f / 255.0f;
   PatchState& state = states_[patch_idx];
@@ -157,7 +158,7 @@ bool SparseFitter::integrate_sample(std::size_t patch_idx, const DirectedColour&
   return model_.store_observed(patch_idx, true) || changed;
 }
 
-void SparseFitter::keep_samples(const core::SampleBatch& batch) {
+void SparsePatches::keep_samples(const core::SampleBatch& batch) {
   pool_.reserve(batch.size());
   std::mutex mutex;
   // Patches are independent and appear once: any split of the batch gives the same result.
@@ -183,7 +184,7 @@ void SparseFitter::keep_samples(const core::SampleBatch& batch) {
 // The most urgent of the view's patches, as many as the budget allows: a count of work and not a
 // time, so that results do not depend on the machine. The others keep their refit priority and ask
 // again when they are seen again, or wait for `finish`.
-void SparseFitter::collect_requests(const core::SampleBatch& batch) {
+void SparsePatches::collect_requests(const core::SampleBatch& batch) {
   requests_.clear();
   for (std::size_t i = 0; i < batch.size(); ++i) {
     const PatchState& state = states_[batch.patch[i]];
@@ -205,7 +206,7 @@ void SparseFitter::collect_requests(const core::SampleBatch& batch) {
   requests_.resize(granted);
 }
 
-void SparseFitter::improve(const core::SampleBatch& batch) {
+void SparsePatches::improve(const core::SampleBatch& batch) {
   constexpr std::size_t steps_worth_a_thread = 64;
   std::mutex mutex;
   core::parallel_for(
@@ -230,7 +231,7 @@ void SparseFitter::improve(const core::SampleBatch& batch) {
       steps_worth_a_thread);
 }
 
-const ModelUpdate& SparseFitter::integrate_samples(const core::SampleBatch& batch) {
+const ModelUpdate& SparsePatches::integrate_samples(const core::SampleBatch& batch) {
   changes_.reset(batch.size());
   keep_samples(batch);
   update_tolerance();
@@ -240,7 +241,7 @@ const ModelUpdate& SparseFitter::integrate_samples(const core::SampleBatch& batc
   return update_;
 }
 
-void SparseFitter::settle() {
+void SparsePatches::settle() {
   std::mutex mutex;
   core::parallel_for(states_.size(), threads_, [&](std::size_t begin, std::size_t end) {
     std::size_t fits = 0;
@@ -261,7 +262,7 @@ void SparseFitter::settle() {
   });
 }
 
-void SparseFitter::fill() {
+void SparsePatches::fill() {
   std::vector<Eigen::Vector3f> colours(states_.size());
   for (std::size_t patch = 0; patch < colours.size(); ++patch) {
     colours[patch] = model_.mean_colour(patch);
@@ -275,7 +276,7 @@ void SparseFitter::fill() {
   }
 }
 
-const ModelUpdate& SparseFitter::finish() {
+const ModelUpdate& SparsePatches::finish() {
   changes_.reset(states_.size());
   settle();
   fill();
@@ -283,21 +284,34 @@ const ModelUpdate& SparseFitter::finish() {
   return update_;
 }
 
-std::optional<float> SparseFitter::predicted_error(std::size_t patch_idx,
-                                                   const Eigen::Vector2f& uv) const {
+std::optional<float> SparsePatches::predicted_error(std::size_t patch_idx,
+                                                    const Eigen::Vector2f& uv) const {
   const PatchState& state = states_[patch_idx];
   if (state.samples.size() == 0) return std::nullopt;
   return sparse::predicted_error(state.samples, pool_, state.spread, uv,
                                  model_.colour(patch_idx, uv));
 }
 
+Eigen::Vector3f SparsePatches::mean_over_views(std::size_t patch_idx) const {
+  const SampleStore& samples = states_[patch_idx].samples;
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  float total = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Eigen::Vector2f uv = samples.at(i, pool_).uv;
+    const float weight = samples.count(i, pool_) * std::max(0.0f, 1.0f - uv.squaredNorm());
+    sum += weight * model_.colour(patch_idx, uv);
+    total += weight;
+  }
+  return total > 0.0f ? Eigen::Vector3f(sum / total) : Eigen::Vector3f(Eigen::Vector3f::Zero());
+}
+
 }  // namespace
 
-std::unique_ptr<PatchFitter> make_sparse_fitter(const core::VertexNeighbours& neighbours,
-                                                const Options& options, int threads) {
+std::unique_ptr<SparseFitter> make_sparse_fitter(const core::VertexNeighbours& neighbours,
+                                                 const Options& options, int threads) {
   options.check();
   assert(threads >= 1);
-  return std::make_unique<SparseFitter>(neighbours, options, threads);
+  return std::make_unique<SparsePatches>(neighbours, options, threads);
 }
 
 }  // namespace sheen::fitting::sparse

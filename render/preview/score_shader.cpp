@@ -24,7 +24,8 @@ class ScoreShader final : public PatchShader {
 
   [[nodiscard]] std::string glsl() const override {
     return definition("LOW", palette_.low) + definition("MIDDLE", palette_.middle) +
-           definition("HIGH", palette_.high) + std::string(shader_text("preview/score.glsl"));
+           definition("HIGH", palette_.high) + definition("UNSEEN", palette_.unseen) +
+           std::string(shader_text("preview/score.glsl"));
   }
 
   std::size_t upload(std::span<const std::uint32_t> patches) override {

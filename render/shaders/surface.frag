@@ -1,10 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Closes the partition of unity: colour sum and weight sum were interpolated apart (eq. 7).
+// Closes the partition of unity: colour sum and weight sum were interpolated apart (eq. 7), and adds
+// the texture, if there is one.
 // The alpha channel tells background (0), seen surface without support (0.5) and with (1).
 layout(location = 1) in vec4 corner_sums;
+#ifdef TEXTURED
+layout(location = 2) in vec2 corner_place;
+layout(binding = SURFACE_TEXTURE_UNIT) uniform sampler2D surface_texture;
+#endif
 layout(location = 0) out vec4 colour;
 
 void main() {
   float alpha = corner_sums.a > 2.0 * UNSEEN_WEIGHT ? 1.0 : 0.5;
-  colour = vec4(clamp(corner_sums.rgb / corner_sums.a, 0.0, 1.0), alpha);
+  vec3 rgb = corner_sums.rgb / corner_sums.a;
+#ifdef TEXTURED
+  rgb += texture(surface_texture, corner_place).rgb;
+#endif
+  colour = vec4(clamp(rgb, 0.0, 1.0), alpha);
 }

@@ -8,6 +8,10 @@ layout(location = 0) out vec3 control_in_camera[];
 layout(location = 1) in vec4 corner_sums[];
 layout(location = 1) out vec4 control_sums[];
 #endif
+#ifdef TEXTURED
+layout(location = 2) in vec2 corner_place[];
+layout(location = 2) out vec2 control_place[];
+#endif
 
 float segments(vec3 a, vec3 b) {
   // Equal steps on the edge are longest in the image at its near end.
@@ -19,6 +23,9 @@ void main() {
   control_in_camera[gl_InvocationID] = corner_in_camera[gl_InvocationID];
 #ifdef SHADED
   control_sums[gl_InvocationID] = corner_sums[gl_InvocationID];
+#endif
+#ifdef TEXTURED
+  control_place[gl_InvocationID] = corner_place[gl_InvocationID];
 #endif
   if (gl_InvocationID == 0) {
     vec3 a = corner_in_camera[0];

@@ -6,6 +6,10 @@ layout(location = 0) in vec3 control_in_camera[];
 layout(location = 1) in vec4 control_sums[];
 layout(location = 1) out vec4 corner_sums;
 #endif
+#ifdef TEXTURED
+layout(location = 2) in vec2 control_place[];
+layout(location = 2) out vec2 corner_place;
+#endif
 
 void main() {
   // `precise` and the symmetric sum give both triangles at an edge the same point, bit by bit.
@@ -15,6 +19,10 @@ void main() {
 #ifdef SHADED
   corner_sums = weights.x * control_sums[0] + weights.y * control_sums[1] +
                 weights.z * control_sums[2];
+#endif
+#ifdef TEXTURED
+  corner_place = weights.x * control_place[0] + weights.y * control_place[1] +
+                 weights.z * control_place[2];
 #endif
   gl_Position = clip_from_camera(in_camera);
 }

@@ -3,6 +3,12 @@
 // applied after tessellation.
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
+#ifdef TEXTURED
+// TEXTURED: a texture is added; vertices are repeated where it has seams.
+layout(location = 2) in vec2 place;
+layout(location = 3) in uint patch_idx;
+layout(location = 2) out vec2 corner_place;
+#endif
 
 #ifdef TESSELLATED
 layout(location = 0) out vec3 corner_in_camera;
@@ -14,7 +20,13 @@ layout(location = 1) out vec4 corner_sums;
 void main() {
   vec3 in_camera = (camera_from_object * vec4(position, 1.0)).xyz;
 #ifdef SHADED
-  corner_sums = evaluate_patch(gl_VertexID, direction_on_disc(position, normal));
+#ifdef TEXTURED
+  int patch_of_vertex = int(patch_idx);
+  corner_place = place;
+#else
+  int patch_of_vertex = gl_VertexID;
+#endif
+  corner_sums = evaluate_patch(patch_of_vertex, direction_on_disc(position, normal));
 #endif
 #ifdef TESSELLATED
   corner_in_camera = in_camera;

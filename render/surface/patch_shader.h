@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/atlas/atlas.h"
 #include "core/mesh/mesh.h"
 #include "fitting/patch_light_field.h"
 #include "render/gl/functions.h"
@@ -14,6 +15,9 @@
 
 namespace sheen::render {
 
+/// Texture unit of a texture over the surface; the others are the patches'.
+inline constexpr GLuint kSurfaceTextureUnit = 7;
+
 /// What one representation adds to the common renderer: its coefficients on the GPU and the GLSL
 /// that reads them. All members need the context current.
 class PatchShader {
@@ -24,9 +28,13 @@ class PatchShader {
   /// a patch, as LightField::evaluate.
   [[nodiscard]] virtual std::string glsl() const = 0;
 
-  /// Sends the coefficients of these patches (ascending, no repeats), neighbouring ones together.
+  /// Layout of a texture that is added to what patches interpolate to; null: none. With one,
+  /// `bind` makes it available as kSurfaceTextureUnit.
+  [[nodiscard]] virtual const core::Atlas* atlas() const { return nullptr; }
+
+  /// Sends these elements of the light field (ascending, no repeats), neighbouring ones together.
   /// Returns the bytes handed to OpenGL.
-  virtual std::size_t upload(std::span<const std::uint32_t> patches) = 0;
+  virtual std::size_t upload(std::span<const std::uint32_t> elements) = 0;
 
   /// Called before every draw with the eye in the object frame (metres), for shaders that depend on
   /// the view on this side of OpenGL.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/diagnostics/error.h"
+#include "render/detail/detail_patch_shader.h"
 #include "render/evaluated/evaluated_patch_shader.h"
 #include "render/iwls/iwls_patch_shader.h"
 #include "render/mean/mean_patch_shader.h"
@@ -19,9 +20,8 @@ using Factory = std::unique_ptr<PatchShader> (*)(const gl::Functions&,
 
 /// One line per representation.
 constexpr std::pair<std::string_view, Factory> kPatchShaders[] = {
-    {"iwls", iwls::make_patch_shader},
-    {"mean", mean::make_patch_shader},
-    {"sh", spherical_harmonics::make_patch_shader},
+    {"detail", detail::make_patch_shader}, {"iwls", iwls::make_patch_shader},
+    {"mean", mean::make_patch_shader},     {"sh", spherical_harmonics::make_patch_shader},
     {"sparse", sparse::make_patch_shader},
 };
 

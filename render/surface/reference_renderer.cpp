@@ -2,6 +2,7 @@
 #include "core/concurrency/parallel_for.h"
 #include "core/samples/vertex_view.h"
 #include "core/visibility/ray_caster.h"
+#include "fitting/texture/surface_texture.h"
 #include "render/surface/surface_renderer.h"
 
 #include <algorithm>
@@ -87,7 +88,7 @@ class ReferenceRenderer final : public Renderer {
       for (std::size_t i = begin; i < end; ++i) {
         if (needed_[i] == 0) continue;
         const auto direction = core::direction_towards(frames_[i], mesh_.positions[i], eye);
-        colours_[i] = light_field_.evaluate(i, direction.uv);
+        colours_[i] = light_field_.interpolated_part(i, direction.uv);
       }
     });
   }
@@ -99,7 +100,8 @@ class ReferenceRenderer final : public Renderer {
       for (std::size_t i = begin; i < end; ++i) {
         const bool seen = hits_[i].triangle_idx != kNoTriangle;
         const fitting::WeightedColour sums = seen ? interpolate(hits_[i]) : kNothing;
-        const Eigen::Vector3f rgb = 255.0f * sums.colour().cwiseMax(0.0f).cwiseMin(1.0f);
+        const Eigen::Vector3f colour = sums.colour() + (seen ? texture_at(hits_[i]) : kBlack);
+        const Eigen::Vector3f rgb = 255.0f * colour.cwiseMax(0.0f).cwiseMin(1.0f);
         for (int channel = 0; channel < 3; ++channel) {
           view.image.data[3 * i + static_cast<std::size_t>(channel)] =
               static_cast<std::uint8_t>(std::lround(rgb[2 - channel]));
@@ -122,6 +124,12 @@ class ReferenceRenderer final : public Renderer {
     return sums;
   }
 
+  [[nodiscard]] Eigen::Vector3f texture_at(const PixelHit& hit) const {
+    const fitting::SurfaceTexture* const texture = light_field_.texture_between_patches();
+    return texture == nullptr ? kBlack : texture->at(hit.triangle_idx, hit.barycentric);
+  }
+
+  inline static const Eigen::Vector3f kBlack = Eigen::Vector3f::Zero();
   /// Black, with a weight that can be divided by.
   inline static const fitting::WeightedColour kNothing{Eigen::Vector3f::Zero(), 1.0f};
 

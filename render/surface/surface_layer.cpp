@@ -9,7 +9,7 @@ namespace sheen::render {
 
 SurfaceLayer::SurfaceLayer(const gl::Functions& gl, const core::Mesh& mesh,
                            std::unique_ptr<PatchShader> paint)
-    : paint_(std::move(paint)), pass_(gl, mesh, paint_->glsl()) {}
+    : paint_(std::move(paint)), pass_(gl, mesh, paint_->glsl(), paint_->atlas()) {}
 
 void SurfaceLayer::draw(gl::OffscreenTarget& target, const core::CameraModel& camera,
                         const Eigen::Isometry3d& camera_from_object) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "render/surface/surface_pass.h"
 
+#include "core/atlas/atlas_vertices.h"
 #include "core/mesh/bounds.h"
 #include "fitting/patch_light_field.h"
 #include "render/gl/program.h"
 #include "render/shaders/shader_text.h"
+#include "render/surface/patch_shader.h"
 #include "render/surface/view_block.h"
 
 #include <Eigen/Geometry>
@@ -24,6 +26,14 @@ struct Vertex {
   Eigen::Vector3f normal;
 };
 static_assert(sizeof(Vertex) == 6 * sizeof(float));
+
+/// With a texture a vertex may be there several times, once for each of its places.
+struct TexturedVertex {
+  Vertex vertex;
+  core::AtlasPoint place;
+  std::uint32_t patch_idx;
+};
+static_assert(sizeof(TexturedVertex) == sizeof(Vertex) + 2 * sizeof(std::uint32_t));
 
 /// The lenses of core/geometry/lens as GLSL reads them, and the camera that has one of them.
 std::string lens_glsl() {
@@ -47,12 +57,14 @@ std::string lens_glsl() {
 }
 
 gl::Program make_surface_program(const gl::Functions& gl, const std::string& patch_glsl,
-                                 bool tessellated) {
+                                 bool textured, bool tessellated) {
   // Say in front of every stage what is wanted.
   const bool shaded = !patch_glsl.empty();
   const std::string defines =
-      std::string(shaded ? "#define SHADED\n" : "") + (tessellated ? "#define TESSELLATED\n" : "") +
-      "#define UNSEEN_WEIGHT " + std::to_string(fitting::kUnseenWeight) + "\n";
+      std::string(shaded ? "#define SHADED\n" : "") + (textured ? "#define TEXTURED\n" : "") +
+      (tessellated ? "#define TESSELLATED\n" : "") + "#define UNSEEN_WEIGHT " +
+      std::to_string(fitting::kUnseenWeight) + "\n" + "#define SURFACE_TEXTURE_UNIT " +
+      std::to_string(kSurfaceTextureUnit) + "\n";
   const std::string lens = lens_glsl();
 
   // Gather the stages.
@@ -76,10 +88,15 @@ gl::Program make_surface_program(const gl::Functions& gl, const std::string& pat
 
 }  // namespace
 
-SurfacePass::SurfacePass(const gl::Functions& gl, const core::Mesh& mesh, std::string patch_glsl)
-    : gl_(gl), patch_glsl_(std::move(patch_glsl)) {
+SurfacePass::SurfacePass(const gl::Functions& gl, const core::Mesh& mesh, std::string patch_glsl,
+                         const core::Atlas* atlas)
+    : gl_(gl), patch_glsl_(std::move(patch_glsl)), textured_(atlas != nullptr) {
   measure(mesh);
-  upload(mesh);
+  if (atlas != nullptr) {
+    upload_split(mesh, *atlas);
+  } else {
+    upload(mesh);
+  }
   program(false);
 }
 
@@ -132,20 +149,44 @@ void SurfacePass::measure(const core::Mesh& mesh) {
 }
 
 void SurfacePass::upload(const core::Mesh& mesh) {
-  // Fill the buffers.
   std::vector<Vertex> vertices(mesh.positions.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     vertices[i] = {mesh.positions[i], mesh.normals[i]};
   }
-  index_count_ = static_cast<GLsizei>(3 * mesh.triangles.size());
+  make_buffers(vertices, mesh.triangles);
+}
+
+void SurfacePass::upload_split(const core::Mesh& mesh, const core::Atlas& atlas) {
+  const core::AtlasVertices split = core::split_at_seams(mesh, atlas);
+  std::vector<TexturedVertex> vertices(split.vertex.size());
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const std::uint32_t vertex = split.vertex[i];
+    vertices[i] = {{mesh.positions[vertex], mesh.normals[vertex]}, split.place[i], vertex};
+  }
+  make_buffers(vertices, split.triangles);
+  const GLuint array = vertex_array_.name();
+  for (const GLuint attribute : {2u, 3u}) {
+    gl_.EnableVertexArrayAttrib(array, attribute);
+    gl_.VertexArrayAttribBinding(array, attribute, 0);
+  }
+  gl_.VertexArrayAttribFormat(array, 2, 2, GL_UNSIGNED_SHORT, GL_TRUE, sizeof(Vertex));
+  gl_.VertexArrayAttribIFormat(array, 3, 1, GL_UNSIGNED_INT,
+                               sizeof(Vertex) + sizeof(core::AtlasPoint));
+}
+
+/// Position and normal are what every vertex begins with.
+template <typename Vertex>
+void SurfacePass::make_buffers(const std::vector<Vertex>& vertices,
+                               const decltype(core::Mesh::triangles)& triangles) {
+  // Fill the buffers.
+  index_count_ = static_cast<GLsizei>(3 * triangles.size());
   vertices_ = gl::make_buffer(gl_, static_cast<GLsizeiptr>(vertices.size() * sizeof(Vertex)),
                               vertices.data());
-  indices_ = gl::make_buffer(
-      gl_, static_cast<GLsizeiptr>(mesh.triangles.size() * sizeof(mesh.triangles[0])),
-      mesh.triangles.data());
+  indices_ = gl::make_buffer(gl_, static_cast<GLsizeiptr>(triangles.size() * sizeof(triangles[0])),
+                             triangles.data());
   view_block_ = gl::make_buffer(gl_, sizeof(ViewBlock), nullptr);
 
-  // Say how a vertex lies in them: position, then normal.
+  // Say how a vertex lies in them.
   vertex_array_ = gl::make_vertex_array(gl_);
   const GLuint array = vertex_array_.name();
   gl_.VertexArrayVertexBuffer(array, 0, vertices_.name(), 0, sizeof(Vertex));
@@ -181,7 +222,7 @@ bool SurfacePass::needs_tessellation(const Eigen::Isometry3d& camera_from_object
 
 const gl::Program& SurfacePass::program(bool tessellated) {
   gl::Program& program = tessellated ? tessellated_ : plain_;
-  if (program.name() == 0) program = make_surface_program(gl_, patch_glsl_, tessellated);
+  if (program.name() == 0) program = make_surface_program(gl_, patch_glsl_, textured_, tessellated);
   return program;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/atlas/atlas.h"
 #include "core/geometry/camera.h"
 #include "core/mesh/mesh.h"
 #include "render/gl/owners.h"
@@ -8,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include <string>
+#include <vector>
 
 namespace sheen::render {
 
@@ -17,9 +19,11 @@ namespace sheen::render {
 class SurfacePass {
  public:
   /// Depth only when `patch_glsl` is empty; else it defines
-  /// `vec4 evaluate_patch(int patch_idx, vec2 uv)`, colour sum and weight sum of a patch. The
-  /// context is current; `gl` outlives the pass. Throws core::Error (run_failed).
-  SurfacePass(const gl::Functions& gl, const core::Mesh& mesh, std::string patch_glsl);
+  /// `vec4 evaluate_patch(int patch_idx, vec2 uv)`, colour sum and weight sum of a patch. With an
+  /// atlas (used here only) the texture bound to kSurfaceTextureUnit is added. The context is
+  /// current; `gl` outlives the pass. Throws core::Error (run_failed).
+  SurfacePass(const gl::Functions& gl, const core::Mesh& mesh, std::string patch_glsl,
+              const core::Atlas* atlas = nullptr);
 
   /// Clears the bound framebuffer `target` and draws.
   void draw(GLuint target, const core::CameraModel& camera,
@@ -32,6 +36,10 @@ class SurfacePass {
  private:
   void measure(const core::Mesh& mesh);
   void upload(const core::Mesh& mesh);
+  void upload_split(const core::Mesh& mesh, const core::Atlas& atlas);
+  template <typename Vertex>
+  void make_buffers(const std::vector<Vertex>& vertices,
+                    const decltype(core::Mesh::triangles)& triangles);
   void set_state(const core::CameraModel& camera) const;
   [[nodiscard]] bool needs_tessellation(const Eigen::Isometry3d& camera_from_object,
                                         double longest_segment) const;
@@ -39,6 +47,7 @@ class SurfacePass {
 
   const gl::Functions& gl_;
   std::string patch_glsl_;
+  bool textured_;
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  ///< of the bounds, object frame
   double radius_m_ = 0;
   double longest_edge_m_ = 0;

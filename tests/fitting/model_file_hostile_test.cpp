@@ -21,7 +21,11 @@ class HostileModelFile : public ::testing::Test {
  protected:
   HostileModelFile() {
     const core::Mesh mesh = testing::octahedron();
-    write_model(folder_ / "good.glb", mesh, testing::fitted("iwls", mesh)->light_field());
+    write_good(mesh, testing::fitted("iwls", mesh)->light_field());
+  }
+
+  void write_good(const core::Mesh& mesh, const LightField& light_field) {
+    write_model(folder_ / "good.glb", mesh, light_field);
     good_ = read_file(folder_ / "good.glb");
   }
 
@@ -143,6 +147,79 @@ TEST_F(HostileModelFile, BrokenStructureIsRefused) {
       [](json& d) { d["meshes"] = json::array(); },
       [](json& d) { d["meshes"][0]["primitives"][0]["attributes"].erase("NORMAL"); },
       [](json& d) { d["meshes"][0]["primitives"][0]["indices"] = 1e30; },
+  };
+  for (std::size_t i = 0; i < changes.size(); ++i) {
+    EXPECT_TRUE(refused(with_new_checksum([&](json& document, std::string&) {
+      changes[i](document);
+    }))) << i;
+  }
+}
+
+/// The same with a texture; each of the octahedron's faces is a chart, so vertices are repeated.
+class HostileTexture : public HostileModelFile {
+ protected:
+  HostileTexture() {
+    const core::Mesh mesh = testing::octahedron();
+    const auto fitter = make_fitter("detail", mesh, {{"texel-mm", "20"}});
+    write_good(mesh, fitter->light_field());
+  }
+};
+
+TEST_F(HostileTexture, NewChecksumAloneIsAccepted) {
+  EXPECT_FALSE(refused(with_new_checksum([](json&, std::string&) {})));
+}
+
+TEST_F(HostileTexture, EveryTruncationIsRefused) {
+  for (std::size_t length = 0; length < good_.size(); length += 3) {
+    ASSERT_TRUE(refused(good_.substr(0, length))) << length;
+  }
+}
+
+// Whatever the image holds, reading ends with a model or a refusal.
+TEST_F(HostileTexture, BrokenImagesAreRefusedOrRead) {
+  const Glb glb = parse_glb(good_);
+  const json& view =
+      glb.document["bufferViews"][glb.document["images"][0]["bufferView"].get<int>()];
+  const auto begin = view["byteOffset"].get<std::size_t>();
+  const auto size = view["byteLength"].get<std::size_t>();
+  for (std::size_t at = 0; at < size; ++at) {
+    const bool was_refused = refused(with_new_checksum([&](json&, std::string& binary) {
+      binary[begin + at] = static_cast<char>(binary[begin + at] ^ (1 << (at % 8)));
+    }));
+    // Signature, sizes, depth and kind of colour.
+    if (at < 26) {
+      EXPECT_TRUE(was_refused) << at;
+    }
+  }
+  // An image that claims to be 65536 texels wide, and one that ends early.
+  EXPECT_TRUE(
+      refused(with_new_checksum([&](json&, std::string& binary) { binary[begin + 17] = 1; })));
+  EXPECT_TRUE(refused(with_new_checksum([&](json& document, std::string&) {
+    document["bufferViews"][document["images"][0]["bufferView"].get<int>()]["byteLength"] = 40;
+  })));
+}
+
+TEST_F(HostileTexture, BrokenStructureIsRefused) {
+  const auto image_view = [](json& d) -> json& {
+    return d["bufferViews"][d["images"][0]["bufferView"].get<int>()];
+  };
+  const auto attributes = [](json& d) -> json& {
+    return d["meshes"][0]["primitives"][0]["attributes"];
+  };
+  const std::vector<std::function<void(json&)>> changes{
+      [](json& d) { d["extensions"][kExtension].erase("image"); },
+      [](json& d) { d["extensions"][kExtension]["image"] = 1; },
+      [](json& d) { d["extensions"][kExtension]["image"] = "a"; },
+      [](json& d) { d.erase("images"); },
+      [](json& d) { d["images"][0]["bufferView"] = 99; },
+      [&](json& d) { image_view(d)["byteLength"] = 0; },
+      [&](json& d) { image_view(d)["byteOffset"] = 0; },
+      [&](json& d) { attributes(d).erase("TEXCOORD_0"); },
+      [&](json& d) { attributes(d)["TEXCOORD_0"] = attributes(d)["POSITION"]; },
+      [&](json& d) { d["accessors"][attributes(d)["TEXCOORD_0"].get<int>()]["count"] = 7; },
+      [](json& d) { d["extensions"][kExtension].erase("copies"); },
+      [](json& d) { d["extensions"][kExtension]["copies"] = 0; },
+      [](json& d) { d["extensions"][kExtension]["representation"] = "sparse"; },
   };
   for (std::size_t i = 0; i < changes.size(); ++i) {
     EXPECT_TRUE(refused(with_new_checksum([&](json& document, std::string&) {

@@ -73,10 +73,16 @@ inline core::SampleBatch one_sample(std::uint32_t patch, const Eigen::Vector2d& 
   return batch;
 }
 
-/// Every representation by name, in the registry's order.
+/// Every representation that is fitted to samples alone, by name, in the registry's order.
 inline std::vector<std::string> representation_names() {
+  core::Mesh point;
+  point.positions.emplace_back(0.0f, 0.0f, 0.0f);
+  point.normals.emplace_back(0.0f, 0.0f, 1.0f);
   std::vector<std::string> names;
-  for (const Descriptor* descriptor : representations()) names.emplace_back(descriptor->name);
+  for (const Descriptor* descriptor : representations()) {
+    const std::string name(descriptor->name);
+    if (!make_fitter(name, point)->needs_images()) names.push_back(name);
+  }
   return names;
 }
 

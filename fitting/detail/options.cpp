@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#include "fitting/detail/options.h"
+
+#include <stdexcept>
+#include <string>
+
+namespace sheen::fitting::detail {
+
+void Options::check() const {
+  patches.check();
+  if (texel_mm && !(*texel_mm > 0.0f)) {
+    throw std::invalid_argument("texel-mm is " + std::to_string(*texel_mm) +
+                                ", it must be positive");
+  }
+}
+
+OptionTable option_table(Options& options) {
+  OptionTable table = sparse::option_table(options.patches);
+  table.push_back(number_option(kTexelOption, options.texel_mm, 1e-4, 1e4,
+                                "Side of a texel on the surface, mm (default: what a pixel covers "
+                                "there)"));
+  return table;
+}
+
+}  // namespace sheen::fitting::detail

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "fitting/option_table.h"
+#include "fitting/sparse/options.h"
+
+#include <optional>
+
+namespace sheen::fitting::detail {
+
+/// How a texture and patches are fitted.
+struct Options {
+  sparse::Options patches{};
+  /// Side of a texel on the surface, millimetres, > 0. Nothing: a thousandth of the object's
+  /// diagonal; who knows the camera gives what a pixel covers.
+  std::optional<float> texel_mm{};
+
+  /// Throws std::invalid_argument naming the option and its allowed values.
+  void check() const;
+};
+
+/// Name of the option that sets `texel_mm`.
+inline constexpr const char* kTexelOption = "texel-mm";
+
+OptionTable option_table(Options& options);
+
+}  // namespace sheen::fitting::detail

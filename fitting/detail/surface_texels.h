@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "core/atlas/atlas.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace sheen::fitting::detail {
+
+/// A texel and the place on its triangle where the surface is nearest to its centre.
+struct SurfaceTexel {
+  std::uint32_t texel_idx;    ///< row * width + column
+  float at_second, at_third;  ///< weights of the triangle's second and third corner
+};
+
+/// Every texel that a bilinear reading somewhere on the surface touches, with the one triangle it
+/// belongs to: the one that covers its centre or comes nearest to it.
+class SurfaceTexels {
+ public:
+  explicit SurfaceTexels(const core::Atlas& atlas);
+
+  [[nodiscard]] std::size_t size() const { return texels_.size(); }
+  /// Those of a triangle.
+  [[nodiscard]] std::span<const SurfaceTexel> of(std::size_t triangle_idx) const {
+    return {texels_.data() + offsets_[triangle_idx],
+            offsets_[triangle_idx + 1] - offsets_[triangle_idx]};
+  }
+
+ private:
+  std::vector<std::uint32_t> offsets_;
+  std::vector<SurfaceTexel> texels_;
+};
+
+}  // namespace sheen::fitting::detail

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include "fitting/detail/texel_means.h"
+
+#include "core/concurrency/parallel_for.h"
+
+#include <algorithm>
+#include <atomic>
+#include <optional>
+
+namespace sheen::fitting::detail {
+namespace {
+
+constexpr float kWeightUnits = 64.0f;
+constexpr float kColourUnits = 4.0f;  // of a step of the image
+/// A texel takes no more when its sums could overflow: after 65,000 views that see it frontally.
+constexpr std::uint32_t kFull = 0xffffffffU / 1020U - 64U;
+
+using Rgb = std::array<float, 3>;
+
+/// Bilinear, 0 to 255, RGB; the four pixels exist.
+Rgb read(const cv::Mat& image, const Eigen::Vector2f& at_px) {
+  const auto x = static_cast<int>(at_px.x());
+  const auto y = static_cast<int>(at_px.y());
+  const float right = at_px.x() - static_cast<float>(x);
+  const float below = at_px.y() - static_cast<float>(y);
+  const std::uint8_t* const upper = image.ptr<std::uint8_t>(y) + 3 * x;
+  const std::uint8_t* const lower = upper + image.step[0];
+  const auto channel = [&](int c) {
+    const float above =
+        (1 - right) * static_cast<float>(upper[c]) + right * static_cast<float>(upper[c + 3]);
+    const float under =
+        (1 - right) * static_cast<float>(lower[c]) + right * static_cast<float>(lower[c + 3]);
+    return (1 - below) * above + below * under;
+  };
+  return {channel(2), channel(1), channel(0)};
+}
+
+void add(const Rgb& rgb, float cosine, TexelMean& mean) {
+  if (mean.weight > kFull) return;
+  const auto q = static_cast<std::uint32_t>(cosine * cosine * kWeightUnits + 0.5f);
+  mean.weight += q;
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    mean.colour[channel] += q * static_cast<std::uint32_t>(rgb[channel] * kColourUnits + 0.5f);
+  }
+}
+
+void add(const Rgb& rgb, const std::array<float, 3>& weight, CornerColours& corners) {
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    corners.weight[corner] += weight[corner];
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      corners.colour[corner][channel] += weight[corner] * rgb[channel];
+    }
+  }
+}
+
+Texel stored(const TexelMean& mean) {
+  const auto channel = [&](std::size_t c) {
+    return static_cast<std::uint8_t>((mean.colour[c] + 2 * mean.weight) / (4 * mean.weight));
+  };
+  return {channel(0), channel(1), channel(2)};
+}
+
+}  // namespace
+
+TexelMeans::TexelMeans(const core::Mesh& mesh, const core::Atlas& atlas, int threads)
+    : mesh_(mesh),
+      threads_(threads),
+      surface_(atlas),
+      means_(atlas.texel_count()),
+      corners_(mesh.triangles.size()) {}
+
+// A texel belongs to one triangle: no two threads add to the same one.
+void TexelMeans::integrate(const core::Observation& observation, const ViewRaster& raster,
+                           SurfaceTexture& texture) {
+  page_is_touched_.assign(texture.page_count(), 0);
+  core::parallel_for(mesh_.triangles.size(), threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      integrate_triangle(static_cast<std::uint32_t>(t), observation, raster, texture);
+    }
+  });
+}
+
+void TexelMeans::integrate_triangle(std::uint32_t triangle_idx,
+                                    const core::Observation& observation, const ViewRaster& raster,
+                                    SurfaceTexture& texture) {
+  CornerColours& corners = corners_[triangle_idx];
+  corners = {};
+  const std::optional<SeenTriangle> triangle = raster.triangle(triangle_idx);
+  if (!triangle) return;
+  const auto without_gain = static_cast<float>(1 / observation.gain);
+  for (const SurfaceTexel& texel : surface_.of(triangle_idx)) {
+    const std::array<float, 3> weight{1.0f - texel.at_second - texel.at_third, texel.at_second,
+                                      texel.at_third};
+    const auto at_px = raster.place(*triangle, weight);
+    if (!at_px) continue;
+    Rgb rgb = read(observation.image, *at_px);
+    for (float& channel : rgb) channel = std::min(255.0f, channel * without_gain);
+    TexelMean& mean = means_[texel.texel_idx];
+    add(rgb, triangle->cosine(weight), mean);
+    add(rgb, weight, corners);
+    texture.texels()[texel.texel_idx] = stored(mean);
+    // Triangles of several threads may share a page.
+    std::atomic_ref(page_is_touched_[texture.page_of(texel.texel_idx)])
+        .store(1, std::memory_order_relaxed);
+  }
+}
+
+std::vector<std::uint32_t> TexelMeans::touched_pages() const {
+  std::vector<std::uint32_t> pages;
+  for (std::uint32_t page = 0; page < page_is_touched_.size(); ++page) {
+    if (page_is_touched_[page] != 0) pages.push_back(page);
+  }
+  return pages;
+}
+
+}  // namespace sheen::fitting::detail

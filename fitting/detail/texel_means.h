@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "core/mesh/mesh.h"
+#include "core/samples/observation.h"
+#include "fitting/detail/surface_texels.h"
+#include "fitting/detail/view_raster.h"
+#include "fitting/texture/surface_texture.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace sheen::fitting::detail {
+
+/// The colours that views showed at a texel's place: weighted sums, the weight the squared cosine q
+/// between normal and view, because what is seen obliquely is seen unsharply. Integers, so that
+/// they do not depend on the order of the views.
+struct alignas(16) TexelMean {
+  std::uint32_t weight = 0;               ///< sum of q, in 64ths
+  std::array<std::uint32_t, 3> colour{};  ///< sum of q times the colour, RGB, in 1020ths
+
+  /// Sum of q.
+  [[nodiscard]] float observations() const { return static_cast<float>(weight) / 64.0f; }
+  /// The mean, 0 to 255; weight > 0.
+  [[nodiscard]] float mean(std::size_t channel) const {
+    return static_cast<float>(colour[channel]) / (4.0f * static_cast<float>(weight));
+  }
+};
+
+/// What one view shows around the corners of a triangle: sums over its texels, each weighted with
+/// the corner's barycentric weight w there.
+struct CornerColours {
+  std::array<float, 3> weight{};                 ///< sum of w, corner by corner
+  std::array<std::array<float, 3>, 3> colour{};  ///< sum of w times the colour, RGB, 0 to 255
+};
+
+/// The mean colour of every texel over all views so far.
+class TexelMeans {
+ public:
+  /// `mesh` outlives it; `atlas` is one of its.
+  TexelMeans(const core::Mesh& mesh, const core::Atlas& atlas, int threads);
+
+  /// Adds a view, and writes the means of what it shows into `texture`. The same on any number of
+  /// threads.
+  void integrate(const core::Observation& observation, const ViewRaster& raster,
+                 SurfaceTexture& texture);
+
+  /// Pages of the texture that the last view changed, ascending.
+  [[nodiscard]] std::vector<std::uint32_t> touched_pages() const;
+
+  [[nodiscard]] const std::vector<TexelMean>& texels() const { return means_; }
+  [[nodiscard]] const SurfaceTexels& surface() const { return surface_; }
+  /// Of the last view, one for each triangle.
+  [[nodiscard]] const std::vector<CornerColours>& corners() const { return corners_; }
+
+ private:
+  void integrate_triangle(std::uint32_t triangle_idx, const core::Observation& observation,
+                          const ViewRaster& raster, SurfaceTexture& texture);
+
+  const core::Mesh& mesh_;
+  int threads_;
+  SurfaceTexels surface_;
+  std::vector<TexelMean> means_;
+  std::vector<CornerColours> corners_;
+  std::vector<std::uint8_t> page_is_touched_;
+};
+
+}  // namespace sheen::fitting::detail

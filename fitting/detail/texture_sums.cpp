@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: MIT
+#include "fitting/detail/texture_sums.h"
+
+#include "core/concurrency/parallel_for.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace sheen::fitting::detail {
+namespace {
+
+/// Triangles of a band touch texels in this many rows from its first one on, and in as many more.
+constexpr int kBandRows = 64;
+
+struct Rows {
+  int first, last;
+};
+
+/// Rows that readings within a triangle touch.
+Rows rows_of(const core::Atlas& atlas, std::size_t triangle_idx) {
+  const float a = atlas.place(triangle_idx, 0).y();
+  const float b = atlas.place(triangle_idx, 1).y();
+  const float c = atlas.place(triangle_idx, 2).y();
+  const auto first = static_cast<int>(std::floor(std::min({a, b, c}) - 0.5f));
+  const auto last = static_cast<int>(std::floor(std::max({a, b, c}) - 0.5f)) + 1;
+  // Places are rounded to an eighth of a texel.
+  return {std::max(first, 0), std::min(last + 1, atlas.height - 1)};
+}
+
+}  // namespace
+
+TextureSums::TextureSums(const core::Mesh& mesh, const core::Atlas& atlas, int threads)
+    : mesh_(mesh),
+      atlas_(atlas),
+      threads_(threads),
+      texels_(atlas.texel_count()),
+      bands_(static_cast<std::size_t>((atlas.height + kBandRows - 1) / kBandRows)) {
+  sort_into_bands();
+}
+
+void TextureSums::sort_into_bands() {
+  for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
+    const Rows rows = rows_of(atlas_, t);
+    const int band = rows.first / kBandRows;
+    const bool fits = rows.last < (band + 2) * kBandRows;
+    (fits ? bands_[static_cast<std::size_t>(band)] : high_).push_back(t);
+  }
+}
+
+// Bands of equal parity share no row, so each may be worked on by another thread.
+void TextureSums::integrate(const core::Observation& observation, const ViewRaster& raster) {
+  for (std::size_t value = 0; value < corrected_.size(); ++value) {
+    corrected_[value] = static_cast<std::uint8_t>(
+        std::clamp(std::lround(static_cast<double>(value) / observation.gain), 0L, 255L));
+  }
+  for (const std::size_t parity : {std::size_t{0}, std::size_t{1}}) {
+    core::parallel_for((bands_.size() + 1 - parity) / 2, threads_,
+                       [&](std::size_t begin, std::size_t end) {
+                         for (std::size_t i = begin; i < end; ++i) {
+                           integrate_triangles(bands_[2 * i + parity], observation, raster);
+                         }
+                       },
+                       1);
+  }
+  integrate_triangles(high_, observation, raster);
+}
+
+void TextureSums::integrate_triangles(const Triangles& triangles,
+                                      const core::Observation& observation,
+                                      const ViewRaster& raster) {
+  const TexelGrid grid{texels_.data(), static_cast<std::size_t>(atlas_.width)};
+  for (const std::uint32_t t : triangles) {
+    const std::optional<SeenTriangle> triangle = raster.triangle(t);
+    if (!triangle) continue;
+    const Eigen::Vector2f a = atlas_.place(t, 0);
+    const Eigen::Vector2f b = atlas_.place(t, 1);
+    const Eigen::Vector2f c = atlas_.place(t, 2);
+    raster.for_each_pixel(*triangle, [&](const SurfacePixel& pixel) {
+      const std::uint8_t* const bgr =
+          observation.image.ptr<std::uint8_t>(pixel.y_px) + 3 * pixel.x_px;
+      add_pixel(grid, pixel.weight[0] * a + pixel.weight[1] * b + pixel.weight[2] * c, pixel.cosine,
+                {corrected_[bgr[2]], corrected_[bgr[1]], corrected_[bgr[0]]});
+    });
+  }
+}
+
+}  // namespace sheen::fitting::detail
