@@ -50,7 +50,7 @@ class DetailFitter final : public Fitter {
         raster_(mesh, threads),
         texel_means_(mesh, model_.texture().atlas(), threads),
         texture_sums_(mesh, model_.texture().atlas(), threads),
-        vertex_means_(mesh) {}
+        vertex_means_(mesh, threads) {}
 
   const ModelUpdate& integrate(const core::Observation& observation) override;
   const ModelUpdate& finish() override;

@@ -47,6 +47,8 @@ void add(const Rgb& rgb, float cosine, TexelMean& mean) {
 void add(const Rgb& rgb, const std::array<float, 3>& weight, CornerColours& corners) {
   for (std::size_t corner = 0; corner < 3; ++corner) {
     corners.weight[corner] += weight[corner];
+    corners.square[corner] += weight[corner] * weight[corner];
+    corners.product[corner] += weight[corner] * weight[(corner + 1) % 3];
     for (std::size_t channel = 0; channel < 3; ++channel) {
       corners.colour[corner][channel] += weight[corner] * rgb[channel];
     }

@@ -29,10 +29,12 @@ struct alignas(16) TexelMean {
   }
 };
 
-/// What one view shows around the corners of a triangle: sums over its texels, each weighted with
-/// the corner's barycentric weight w there.
+/// What one view shows of a triangle: the normal equations of three colours at its corners that are
+/// interpolated in between. Sums over its texels of the corners' barycentric weights w there.
 struct CornerColours {
   std::array<float, 3> weight{};                 ///< sum of w, corner by corner
+  std::array<float, 3> square{};                 ///< sum of w w
+  std::array<float, 3> product{};                ///< sum of w times the next corner's w
   std::array<std::array<float, 3>, 3> colour{};  ///< sum of w times the colour, RGB, 0 to 255
 };
 

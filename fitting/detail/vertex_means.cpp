@@ -1,18 +1,27 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/detail/vertex_means.h"
 
-#include <array>
-#include <cstddef>
+#include "core/concurrency/parallel_for.h"
+
+#include <algorithm>
+#include <limits>
 
 namespace sheen::fitting::detail {
 namespace {
 
 /// Weight that the texels around a vertex must have together for their mean to be taken.
 constexpr float kLeastWeight = 1.0f;
+constexpr int kMeanSteps = 3;
 
 }  // namespace
 
-VertexMeans::VertexMeans(const core::Mesh& mesh) : offsets_(mesh.positions.size() + 1, 0) {
+VertexMeans::VertexMeans(const core::Mesh& mesh, int threads)
+    : mesh_(mesh),
+      threads_(threads),
+      offsets_(mesh.positions.size() + 1, 0),
+      weight_(mesh.positions.size()),
+      colour_(mesh.positions.size()),
+      next_(mesh.positions.size()) {
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t vertex : triangle) ++offsets_[vertex + 1];
   }
@@ -26,23 +35,52 @@ VertexMeans::VertexMeans(const core::Mesh& mesh) : offsets_(mesh.positions.size(
   }
 }
 
-void VertexMeans::average(std::span<const CornerColours> triangles,
-                          core::SampleBatch& samples) const {
+template <typename Body>
+void VertexMeans::for_vertices(const Body& body) const {
+  core::parallel_for(weight_.size(), threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t vertex = begin; vertex < end; ++vertex) body(vertex);
+  });
+}
+
+// Weighted means first, which are too smooth, then steps of Jacobi's method with the weights (the
+// sums of the matrix' rows) in place of its diagonal.
+void VertexMeans::average(std::span<const CornerColours> triangles, core::SampleBatch& samples) {
+  for_vertices([&](std::size_t vertex) {
+    weight_[vertex] = 0;
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    for (const Corner& at : corners_at(vertex)) {
+      const CornerColours& triangle = triangles[at.triangle_idx];
+      weight_[vertex] += triangle.weight[at.corner];
+      sum += Eigen::Vector3f(triangle.colour[at.corner].data());
+    }
+    colour_[vertex] = sum / std::max(weight_[vertex], std::numeric_limits<float>::min());
+  });
+  for (int step = 0; step < kMeanSteps; ++step) {
+    for_vertices([&](std::size_t vertex) {
+      next_[vertex] = colour_[vertex];
+      if (weight_[vertex] < kLeastWeight) return;
+      Eigen::Vector3f left = Eigen::Vector3f::Zero();
+      for (const Corner& at : corners_at(vertex)) {
+        const CornerColours& triangle = triangles[at.triangle_idx];
+        const auto& corners = mesh_.triangles[at.triangle_idx];
+        const std::uint32_t after = (at.corner + 1) % 3;
+        const std::uint32_t before = (at.corner + 2) % 3;
+        left += Eigen::Vector3f(triangle.colour[at.corner].data()) -
+                triangle.square[at.corner] * colour_[vertex] -
+                triangle.product[at.corner] * colour_[corners[after]] -
+                triangle.product[before] * colour_[corners[before]];
+      }
+      next_[vertex] += left / weight_[vertex];
+    });
+    colour_.swap(next_);
+  }
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const std::uint32_t vertex = samples.patch[i];
-    float weight = 0;
-    std::array<float, 3> sum{};
-    for (std::uint32_t c = offsets_[vertex]; c < offsets_[vertex + 1]; ++c) {
-      const CornerColours& triangle = triangles[corners_[c].triangle_idx];
-      weight += triangle.weight[corners_[c].corner];
-      for (std::size_t channel = 0; channel < 3; ++channel) {
-        sum[channel] += triangle.colour[corners_[c].corner][channel];
-      }
-    }
-    if (weight < kLeastWeight) continue;
-    samples.r[i] = sum[0] / (255.0f * weight);
-    samples.g[i] = sum[1] / (255.0f * weight);
-    samples.b[i] = sum[2] / (255.0f * weight);
+    if (weight_[vertex] < kLeastWeight) continue;
+    const Eigen::Vector3f rgb = colour_[vertex] / 255.0f;
+    samples.r[i] = rgb.x();
+    samples.g[i] = rgb.y();
+    samples.b[i] = rgb.z();
   }
 }
 

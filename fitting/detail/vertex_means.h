@@ -5,23 +5,28 @@
 #include "core/samples/sample_batch.h"
 #include "fitting/detail/texel_means.h"
 
+#include <Eigen/Core>
+
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 namespace sheen::fitting::detail {
 
-/// The colour of a view around every vertex: mean over the texels of the triangles there, each
-/// weighted with the vertex's barycentric weight. What lies between vertices averages out of it,
-/// and with it what small errors of pose and mesh make of print; a texture that has the print needs
-/// from the vertices only what changes with direction.
+/// The colours at the vertices that, interpolated across the triangles, come nearest to what a view
+/// shows of the surface. What lies between vertices averages out of them, and with it what small
+/// errors of pose and mesh make of print; a texture that has the print needs from the vertices only
+/// what changes with direction.
 class VertexMeans {
  public:
-  explicit VertexMeans(const core::Mesh& mesh);
+  /// `mesh` outlives it.
+  VertexMeans(const core::Mesh& mesh, int threads);
 
-  /// Replaces the colours of a view's samples by means. `triangles` has an entry per triangle.
-  /// Samples with less than about one texel around them stay as they are.
-  void average(std::span<const CornerColours> triangles, core::SampleBatch& samples) const;
+  /// Replaces the colours of a view's samples by these. `triangles` has an entry per triangle.
+  /// Samples with less than about one texel around them stay as they are. The same on any number of
+  /// threads.
+  void average(std::span<const CornerColours> triangles, core::SampleBatch& samples);
 
  private:
   struct Corner {
@@ -29,8 +34,19 @@ class VertexMeans {
     std::uint32_t corner;
   };
 
+  /// Calls `body(vertex)` for all of them.
+  template <typename Body>
+  void for_vertices(const Body& body) const;
+  [[nodiscard]] std::span<const Corner> corners_at(std::size_t vertex) const {
+    return {corners_.data() + offsets_[vertex], offsets_[vertex + 1] - offsets_[vertex]};
+  }
+
+  const core::Mesh& mesh_;
+  int threads_;
   std::vector<std::uint32_t> offsets_;
   std::vector<Corner> corners_;  ///< those at vertex i: [offsets_[i], offsets_[i + 1])
+  std::vector<float> weight_;    ///< of the texels around a vertex
+  std::vector<Eigen::Vector3f> colour_, next_;
 };
 
 }  // namespace sheen::fitting::detail
