@@ -48,10 +48,10 @@ class PatchLoop {
     constexpr std::size_t ahead = 3;
     changes_.reset(batch.size());
     // Patches are independent and appear once: any split of the batch gives the same result.
-    run(batch.size(), [&](std::size_t i, FitStatistics& statistics) {
+    run(batch.size(), [&](std::size_t i, std::size_t end, FitStatistics& statistics) {
       assert(batch.patch[i] < neighbours_.vertex_count());
       assert(i == 0 || batch.patch[i - 1] < batch.patch[i]);
-      if (i + ahead < batch.size()) announce(i + ahead);
+      if (i + ahead < end) announce(i + ahead);  // beyond, another thread writes
       const auto sample = usable_sample(batch, i);
       if (!sample) return;
       const FitOutcome outcome = integrate_one(batch.patch[i], *sample);
@@ -72,7 +72,7 @@ class PatchLoop {
                             const ColourOf& colour_of, const StoreUnseen& store_unseen) {
     changes_.reset(observed.size());
     // Solve what was put off.
-    run(observed.size(), [&](std::size_t patch, FitStatistics& statistics) {
+    run(observed.size(), [&](std::size_t patch, std::size_t /*end*/, FitStatistics& statistics) {
       const FitOutcome outcome = solve(patch);
       changes_.mark(patch, outcome.changed);
       statistics.fits += outcome.fits;
@@ -89,13 +89,14 @@ class PatchLoop {
   }
 
  private:
-  // Calls body(idx, statistics) on all threads and adds up the statistics.
+  // Calls body(idx, end, statistics) on all threads, each up to an `end` of its own, and adds up
+  // the statistics.
   template <typename Body>
   void run(std::size_t count, const Body& body) {
     std::mutex mutex;
     core::parallel_for(count, threads_, [&](std::size_t begin, std::size_t end) {
       FitStatistics here;
-      for (std::size_t i = begin; i < end; ++i) body(i, here);
+      for (std::size_t i = begin; i < end; ++i) body(i, end, here);
       const std::lock_guard lock(mutex);
       statistics_.samples += here.samples;
       statistics_.patch_views += here.patch_views;

@@ -61,29 +61,33 @@ Directions rim(std::size_t count) {
   return directions;
 }
 
-std::vector<std::pair<const char*, Directions>> hard_cases() {
-  std::vector<std::pair<const char*, Directions>> cases{
-      {"one", {{0.3, 0.4}}},
-      {"two", {{0.3, 0.4}, {0.31, 0.4}}},
-      {"three", {{0.3, 0.4}, {0.31, 0.4}, {-0.8, 0.2}}},
-      {"collinear", collinear(200)},
-      {"repeated", Directions(1000, {0.3, 0.4})},
-      {"rim", rim(60)}};
+struct HardCase {
+  const char* name;
+  Directions directions;
+};
+
+std::vector<HardCase> hard_cases() {
+  std::vector<HardCase> cases{{"one", {{0.3, 0.4}}},
+                              {"two", {{0.3, 0.4}, {0.31, 0.4}}},
+                              {"three", {{0.3, 0.4}, {0.31, 0.4}, {-0.8, 0.2}}},
+                              {"collinear", collinear(200)},
+                              {"repeated", Directions(1000, {0.3, 0.4})},
+                              {"rim", rim(60)}};
   // A sweep as hands make it: wobble of half a degree across the line.
   Directions wobbly = collinear(300);
   for (std::size_t i = 0; i < wobbly.size(); ++i) {
     wobbly[i] += 0.008 * std::sin(12.9898 * static_cast<double>(i)) * Eigen::Vector2d(-0.6, 0.8);
   }
-  cases.emplace_back("wobbly", wobbly);
+  cases.push_back({"wobbly", wobbly});
   return cases;
 }
 
 TEST(DegenerateInput, NeverMakesAModelThatIsNotFinite) {
-  for (const auto& [name, directions] : hard_cases()) {
+  for (const HardCase& hard : hard_cases()) {
     for (const bool faithful : {false, true}) {
       testing::for_all_options(faithful ? 3 : 0, faithful, [&](const iwls::Options& options) {
         const auto fitter = make_iwls(options);
-        for (const auto& x : directions) {
+        for (const auto& x : hard.directions) {
           fitter->integrate(testing::one_sample(0, x, steep(x.x(), x.y())));
         }
         range_of_model(fitter->light_field());
@@ -97,19 +101,19 @@ TEST(DegenerateInput, NeverMakesAModelThatIsNotFinite) {
 // With the ridge no direction may leave the range of the samples by more than a tenth: the first
 // views and one-sided sweeps are what people look at while they capture.
 TEST(DegenerateInput, RidgeFitsStayNearTheRangeOfTheSamples) {
-  for (const auto& [name, directions] : hard_cases()) {
+  for (const HardCase& hard : hard_cases()) {
     Range samples;
-    for (const auto& x : directions) {
+    for (const auto& x : hard.directions) {
       samples.lowest = std::min(samples.lowest, two_lobes(x.x(), x.y()).minCoeff());
       samples.highest = std::max(samples.highest, two_lobes(x.x(), x.y()).maxCoeff());
     }
     for (const int terms : {0, 1, 3}) {
       testing::for_all_options(terms, false, [&](const iwls::Options& options) {
         const auto fitter = make_iwls(options);
-        testing::teach(*fitter, directions, two_lobes);
+        testing::teach(*fitter, hard.directions, two_lobes);
         const Range model = range_of_model(fitter->light_field());
-        EXPECT_GT(model.lowest, samples.lowest - 0.1) << name << " " << text_of(options);
-        EXPECT_LT(model.highest, samples.highest + 0.1) << name << " " << text_of(options);
+        EXPECT_GT(model.lowest, samples.lowest - 0.1) << hard.name << " " << text_of(options);
+        EXPECT_LT(model.highest, samples.highest + 0.1) << hard.name << " " << text_of(options);
       });
     }
   }

@@ -101,7 +101,7 @@ TEST(Representation, UpdatesListExactlyWhatChanged) {
     const PatchLightField& model = fitter->light_field();
     std::vector<std::string> before = patches_of(model);
     std::vector<std::uint8_t> observed_before = model.observed();
-    const auto expect_exact = [&](const ModelUpdate& update) {
+    const auto expect_exact = [&, &name = name](const ModelUpdate& update) {
       const std::vector<std::string> after = patches_of(model);
       std::vector<std::uint32_t> changed;
       for (std::uint32_t patch = 0; patch < kPatches; ++patch) {
