@@ -9,7 +9,7 @@
 namespace sheen::core {
 namespace {
 
-cv::Mat noise_image(int width, int height) {
+cv::Mat random_image(int width, int height) {
   cv::Mat image(height, width, CV_8UC3);
   cv::RNG random(7);
   random.fill(image, cv::RNG::UNIFORM, 0, 256);
@@ -18,7 +18,7 @@ cv::Mat noise_image(int width, int height) {
 
 TEST(Png, GivesBackEveryBit) {
   for (const auto& size : {cv::Size(1, 1), cv::Size(7, 3), cv::Size(640, 2), cv::Size(100, 90)}) {
-    const cv::Mat image = noise_image(size.width, size.height);
+    const cv::Mat image = random_image(size.width, size.height);
     const auto bytes = encode_png(image);
     EXPECT_EQ(bytes, encode_png(image));
     EXPECT_EQ(png_size(std::as_bytes(std::span(bytes))), size);
@@ -29,7 +29,7 @@ TEST(Png, GivesBackEveryBit) {
 }
 
 TEST(Png, RefusesOtherSizesAndOtherBytes) {
-  const auto bytes = encode_png(noise_image(20, 10));
+  const auto bytes = encode_png(random_image(20, 10));
   const auto all = std::as_bytes(std::span(bytes));
   EXPECT_FALSE(decode_png(all, {10, 20}));
   for (std::size_t length = 0; length + 12 < all.size(); length += 5) {
