@@ -10,11 +10,12 @@ extern "C" {
 }
 
 #include <algorithm>
-#include <array>
+#include <cctype>
 
 namespace sheen::capture {
 namespace {
 
+constexpr int kMostImageBytes = 64 << 20;
 constexpr const char* kCheckAddress = "check the address that the app or the camera shows";
 
 int asks_to_give_up(void* gives_up) {
@@ -53,8 +54,12 @@ NetworkFault connection_fault(int status) {
 }  // namespace
 
 bool is_network_address(const std::string& address) {
-  return std::ranges::any_of(std::array{"http://", "https://", "rtsp://"},
-                             [&](const char* start) { return address.starts_with(start); });
+  std::string scheme = address.substr(0, address.find("://"));
+  std::ranges::transform(scheme, scheme.begin(), [](unsigned char letter) {
+    return static_cast<char>(std::tolower(letter));
+  });
+  return address.size() > scheme.size() &&
+         (scheme == "http" || scheme == "https" || scheme == "rtsp");
 }
 
 std::string shown_address(const std::string& address) {
@@ -146,6 +151,10 @@ bool HttpImages::next(std::vector<std::uint8_t>& jpeg) {
   }
   if (status < 0) {
     throw NetworkFault("sends something else than JPEG images", kCheckAddress, false);
+  }
+  if (packet.size > kMostImageBytes) {
+    av_packet_unref(&packet);
+    throw NetworkFault("sends images of impossible size", kCheckAddress, true);
   }
   jpeg.assign(packet.data, packet.data + packet.size);
   const bool is_whole = (packet.flags & AV_PKT_FLAG_CORRUPT) == 0 && jpeg_size(jpeg).has_value();

@@ -8,6 +8,7 @@
 #include "capture/source/stated_rate.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace sheen::capture {
@@ -42,8 +43,8 @@ class MotionJpegSource : public FrameSource {
 
   [[nodiscard]] std::optional<int> frame_count() const override {
     if (!promised() && !range_.end) return std::nullopt;
-    return std::min(promised().value_or(*range_.end), range_.end.value_or(*promised())) -
-           range_.start;
+    constexpr int most = std::numeric_limits<int>::max();
+    return std::min(promised().value_or(most), range_.end.value_or(most)) - range_.start;
   }
 
   [[nodiscard]] SourceReport report() const override {

@@ -83,6 +83,10 @@ void NetworkCamera::receive(const std::stop_token& stop) {
       is_away_ = true;
     } catch (const core::Error& error) {
       return fail(error);
+    } catch (const std::exception& error) {
+      return fail({core::Error::Kind::run_failed, shown_address(options_.address),
+                   std::string("recording has stopped: ") + error.what(),
+                   "what was recorded is kept"});
     }
     std::unique_lock lock(mutex_);
     pause_.wait_for(lock, stop, kRetry, [] { return false; });
@@ -105,8 +109,8 @@ void NetworkCamera::receive_from_one_connection(const std::stop_token& stop) {
     is_stale = is_stale && arrival_s - waiting_s < options_.stale_s &&
                arrival_s - connected_s < kMostStale_s;
     if (is_stale) continue;
-    until_s = arrival_s + options_.silence_s;
     if (is_whole) {
+      until_s = arrival_s + options_.silence_s;
       take(std::move(jpeg), arrival_s);
     } else {
       note_damaged();
@@ -132,7 +136,8 @@ void NetworkCamera::take(std::vector<std::uint8_t> jpeg, double arrival_s) {
   last_image_s_ = arrival_s;
   const double time_s = clock_.time_of(arrival_s);
   ++sequence_;
-  if (waiting_bytes_ + jpeg.size() > kMostWaitingBytes) {  // nobody takes them any more
+  if (!waiting_.empty() &&
+      waiting_bytes_ + jpeg.size() > kMostWaitingBytes) {  // nobody takes them any more
     ++counts_.lost;
     return;
   }

@@ -101,7 +101,8 @@ struct VideoColour::Impl {
   std::unique_ptr<SwsContext, FreeScaler> scaler;
   std::optional<LightConverter> light;
   std::optional<Coding> coding;
-  cv::Mat wide;  ///< CV_16UC3
+  cv::Mat wide;  ///< CV_16UC3, rows padded
+  cv::Mat rows;  ///< CV_8UC3, rows padded
   std::vector<std::string> notes;
 
   void note(const std::string& line) {
@@ -210,9 +211,11 @@ bool VideoColour::convert(const AVFrame& picture, cv::Mat& bgr, std::string& fau
     }
     impl_->note_coding(picture, found);
   }
-  bgr.create(found.height, found.width, CV_8UC3);
-  cv::Mat& target = found.needs_light() ? impl_->wide : bgr;
-  if (found.needs_light()) target.create(found.height, found.width, CV_16UC3);
+  // libswscale writes whole blocks of pixels, beyond the end of rows that are not padded.
+  constexpr int block = 16;
+  cv::Mat& target = found.needs_light() ? impl_->wide : impl_->rows;
+  target.create(found.height, (found.width + block - 1) / block * block,
+                found.needs_light() ? CV_16UC3 : CV_8UC3);
   std::uint8_t* const planes[4] = {target.data, nullptr, nullptr, nullptr};
   const int strides[4] = {static_cast<int>(target.step[0]), 0, 0, 0};
   if (sws_scale(impl_->scaler.get(), picture.data, picture.linesize, 0, found.height, planes,
@@ -220,7 +223,10 @@ bool VideoColour::convert(const AVFrame& picture, cv::Mat& bgr, std::string& fau
     fault = "has a picture that cannot be converted";
     return false;
   }
-  if (found.needs_light()) {
+  if (!found.needs_light()) {
+    target.colRange(0, found.width).copyTo(bgr);
+  } else {
+    bgr.create(found.height, found.width, CV_8UC3);
     for (int row = 0; row < found.height; ++row) {
       impl_->light->convert(impl_->wide.ptr<std::uint16_t>(row), bgr.ptr<std::uint8_t>(row),
                             found.width);

@@ -162,9 +162,15 @@ VideoDecoder::Impl::Impl(const std::filesystem::path& video)
 
 void VideoDecoder::Impl::note_packet() {
   if (packet->pts == AV_NOPTS_VALUE) counts_packets = false;
-  if (!counts_packets || (packet->flags & AV_PKT_FLAG_DISCARD) != 0 || packet->size == 0) return;
-  pending.insert(packet->pts);
+  // The reference pictures of VP8 that are never shown: bit 4 of the frame tag is show_frame.
+  const bool is_hidden =
+      codec->codec_id == AV_CODEC_ID_VP8 && packet->size > 0 && (packet->data[0] & 0x10) == 0;
+  if (counts_packets && !is_hidden && (packet->flags & AV_PKT_FLAG_DISCARD) == 0 &&
+      packet->size > 0) {
+    pending.insert(packet->pts);
+  }
   if (pending.size() > kMostPending) counts_packets = false;
+  if (!counts_packets) pending.clear();
 }
 
 /// Reads the next packet of our stream; at the end there is none.

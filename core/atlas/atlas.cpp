@@ -3,6 +3,7 @@
 
 #include "core/atlas/packing.h"
 #include "core/atlas/triangle_shapes.h"
+#include "core/mesh/bounds.h"
 
 #include <algorithm>
 #include <cassert>
@@ -59,6 +60,9 @@ Atlas make_atlas(const Mesh& mesh, float texel_m, std::size_t most_texels) {
   }
   texel_m = std::max(texel_m,
                      static_cast<float>(std::sqrt(surface_m2 / static_cast<double>(most_texels))));
+  // Nor the box of a chart, which follows a thin ring or frame round its hole.
+  constexpr int most_chart_side = kMostAtlasSide / 4;
+  texel_m = std::max(texel_m, bounds_of(mesh).diagonal().norm() / most_chart_side);
   // Area and gutters do not grow alike, so a second and a third step may be needed.
   constexpr int most_steps = 12;
   for (int step = 0;; ++step) {

@@ -14,6 +14,7 @@ using nlohmann::json;
 
 constexpr unsigned kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
                    kUnsignedInt = 5125, kFloat = 5126;
+constexpr std::size_t kMostNumbers = std::size_t{1} << 28;
 constexpr std::size_t kMostZeros = 64;  // elements of an accessor without data, for a byte of file
 
 std::size_t size_of(unsigned component_type) {
@@ -95,6 +96,10 @@ std::string_view type_name(std::size_t components) {
   return names[components];
 }
 
+bool is_unsigned(unsigned type) {
+  return type == kUnsignedByte || type == kUnsignedShort || type == kUnsignedInt;
+}
+
 }  // namespace
 
 std::span<const std::byte> GltfAccessors::part_of_buffer(const json& view) const {
@@ -139,7 +144,7 @@ void GltfAccessors::read_sparse(const json& sparse, unsigned component_type, boo
   const View place_view = view(gltf_size(places, "bufferView"));
   std::vector<std::uint32_t> where;
   const unsigned place_type = component_type_of(places);
-  if (place_type == kFloat) throw GltfFault("has a sparse array of no form");
+  if (!is_unsigned(place_type)) throw GltfFault("has a sparse array of no form");
   read_elements(from(place_view.bytes, gltf_size(places, "byteOffset", 0)), place_view.stride,
                 count, place_type, false, 1, where);
   const View change_view = view(gltf_size(changes, "bufferView"));
@@ -164,6 +169,10 @@ std::vector<Out> GltfAccessors::read(std::size_t accessor, std::size_t component
   }
   const unsigned component_type = component_type_of(object);
   const std::size_t count = gltf_size(object, "count");
+  // Everything together: a small file may name one array many times, or claim zeros.
+  if (count > kMostNumbers / components || (numbers_read_ += count * components) > kMostNumbers) {
+    throw GltfFault("has arrays of impossible size");
+  }
   const json& normalised = gltf_member(object, "normalized");
   const bool is_normalised = normalised.is_boolean() && normalised.get<bool>();
   std::vector<Out> values;
@@ -192,7 +201,8 @@ std::vector<double> GltfAccessors::numbers(std::size_t accessor, std::size_t com
 std::vector<std::uint32_t> GltfAccessors::indices(std::size_t accessor) {
   const json& object = gltf_entry(gltf_.document, "accessors", accessor);
   const unsigned type = component_type_of(object);
-  if (type != kUnsignedByte && type != kUnsignedShort && type != kUnsignedInt) {
+  const json& normalised = gltf_member(object, "normalized");
+  if (!is_unsigned(type) || (normalised.is_boolean() && normalised.get<bool>())) {
     throw GltfFault("has indices that are no whole numbers from 0");
   }
   return read<std::uint32_t>(accessor, 1);

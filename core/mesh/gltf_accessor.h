@@ -43,6 +43,7 @@ class GltfAccessors {
   [[nodiscard]] std::span<const std::byte> part_of_buffer(const nlohmann::json& view) const;
 
   const GltfContainer& gltf_;
+  std::size_t numbers_read_ = 0;
   std::map<std::size_t, std::vector<std::byte>> unpacked_;  ///< compressed views, by index
 };
 

@@ -139,7 +139,8 @@ class GltfReader {
     const json& ids = gltf_member(draco, "attributes");
     if (!ids.is_object()) throw GltfFault("has a compressed primitive of no form");
     const std::size_t corners = object.contains("indices")
-                                    ? accessors_.count(gltf_size(object, "indices"))
+                                    ? std::min(accessors_.count(gltf_size(object, "indices")),
+                                               std::size_t{3} * kMostTriangles)
                                     : 3 * kMostTriangles;
     static constexpr std::size_t most_id = 1U << 20U;
     const auto id = [&ids](const char* name) {

@@ -213,15 +213,16 @@ std::unique_ptr<const LightField> decode_light_field(const json& extension, cons
 
 Model parse_model(std::string file) {
   const Glb glb = parse_glb(file);
-  const json extensions = glb.document.value("extensions", json());
-  if (!extensions.is_object() || !extensions.contains(kExtension)) {
+  // Not copied: a copy recurses as deep as a hostile file nests.
+  const auto found = glb.document.find("extensions");
+  if (found == glb.document.end() || !found->is_object() || !found->contains(kExtension)) {
     throw ModelFault(std::string("it does not hold the extension ") + kExtension);
   }
   if (!has_valid_checksum(file))
     throw ModelFault("its checksum does not fit: the file was altered");
   Model model;
   model.mesh = read_mesh_part(glb);
-  const json& extension = required(extensions, kExtension);
+  const json& extension = required(*found, kExtension);
   model.mesh.offset = read_offset(extension);
   check_conventions(extension);
   const std::optional<SurfaceTexture> texture = read_texture(glb, extension, model.mesh);

@@ -93,6 +93,28 @@ TEST(VideoColours, AreReadByTheMatrixAndRangeThatTheFileStates) {
   }
 }
 
+// libswscale converts blocks of pixels: beyond the last column, and short of it, with the widths
+// that are no multiples of them (portrait phones, laptops).
+TEST(VideoColours, ReachTheLastColumnOfAnyWidth) {
+  const TemporaryFolder folder;
+  for (const int width : {2, 98, 102, 360, 1080, 1366}) {
+    SCOPED_TRACE(width);
+    VideoSpec spec = numbered(2);
+    spec.format = AV_PIX_FMT_YUV420P;
+    spec.width = width;
+    write_video(folder / "wide.mkv", spec);
+    const auto source = open_video(folder / "wide.mkv", {width, spec.height}, {}, std::nullopt);
+    const auto frames = all_frames(*source);
+    ASSERT_EQ(frames.size(), 2u);
+    for (const Frame& frame : frames) {
+      double least = 0;
+      double most = 0;
+      cv::minMaxLoc(frame.image.reshape(1), &least, &most);
+      EXPECT_LE(most - least, 1);  // flat grey, but for a rounding
+    }
+  }
+}
+
 TEST(VideoColours, HighDynamicRangeIsConvertedAndSaid) {
   const TemporaryFolder folder;
   for (const auto transfer : {AVCOL_TRC_ARIB_STD_B67, AVCOL_TRC_SMPTE2084}) {

@@ -245,6 +245,24 @@ TEST_F(HostileModelFile, DeepNestingDoesNotCrash) {
   EXPECT_TRUE(refused(file));
 }
 
+// So would a copy of what it made of balanced brackets.
+TEST_F(HostileModelFile, DeepExtensionsDoNotCrash) {
+  const std::string deep = std::string(1000000, '[') + std::string(1000000, ']');
+  std::uint32_t text_size = 0;
+  std::memcpy(&text_size, good_.data() + 12, 4);
+  std::string text = json{{"asset", {{"version", "2.0"}}}}.dump();
+  text.insert(text.size() - 1, ",\"extensions\":" + deep);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  std::string file = good_.substr(0, 20) + text + good_.substr(20 + text_size);
+  const auto put = [&](std::size_t at, std::size_t value) {
+    const auto word = static_cast<std::uint32_t>(value);
+    std::memcpy(file.data() + at, &word, 4);
+  };
+  put(8, file.size());
+  put(12, text.size());
+  EXPECT_TRUE(refused(file));
+}
+
 // The same for what the arrays hold. View 3 is the triangles, the last-but-one the coefficients.
 TEST_F(HostileModelFile, BrokenNumbersAreRefused) {
   const auto refuses_in_view = [&](const std::function<std::size_t(const json&)>& view_of,
