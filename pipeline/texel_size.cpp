@@ -3,6 +3,7 @@
 
 #include "core/numerics/median.h"
 #include "fitting/descriptor.h"
+#include "fitting/detail/options.h"
 
 #include <fmt/format.h>
 
@@ -10,11 +11,8 @@
 #include <vector>
 
 namespace sheen::pipeline {
-namespace {
 
-constexpr const char* kOption = "texel-mm";
-
-}  // namespace
+using fitting::detail::kTexelOption;
 
 double pixel_footprint_m(std::span<const Eigen::Isometry3d> camera_from_object,
                          const Eigen::Vector3d& centre, double focal_px) {
@@ -26,16 +24,16 @@ double pixel_footprint_m(std::span<const Eigen::Isometry3d> camera_from_object,
 }
 
 bool asks_texel_size(std::string_view representation, const fitting::OptionValues& values) {
-  if (values.contains(kOption)) return false;
+  if (values.contains(kTexelOption)) return false;
   const auto options = fitting::representation_named(representation).default_options();
   return std::ranges::any_of(options->table(),
-                             [](const fitting::FitOption& o) { return o.name == kOption; });
+                             [](const fitting::FitOption& o) { return o.name == kTexelOption; });
 }
 
 void set_texel_size(double texel_m, fitting::OptionValues& values) {
-  constexpr double least_mm = 1e-4;  // as the option allows
-  constexpr double most_mm = 1e4;
-  values[kOption] = fmt::format("{:.4g}", std::clamp(1000 * texel_m, least_mm, most_mm));
+  values[kTexelOption] = fmt::format(
+      "{:.4g}",
+      std::clamp(1000 * texel_m, fitting::detail::kLeastTexel_mm, fitting::detail::kMostTexel_mm));
 }
 
 }  // namespace sheen::pipeline

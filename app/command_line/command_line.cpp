@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "app/command_line/command_line.h"
 
+#include "core/text/lower_case.h"
+
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -42,11 +44,6 @@ CLI::Validator number_check(const std::function<bool(double)>& is_fine, const st
 template <typename Value>
 Option bound(CLI::App* app, const std::string& names, Value& value, const std::string& text) {
   return Option(app->add_option(names, value, text));
-}
-
-std::string lower(std::string text) {
-  std::ranges::transform(text, text.begin(), [](unsigned char c) { return std::tolower(c); });
-  return text;
 }
 
 /// Lines of at most `width` characters, broken between words.
@@ -221,7 +218,7 @@ Option Command::choice_of_words(const std::string& names, const std::vector<std:
   CLI::Option* const option = app_->add_option_function<std::string>(
       names,
       [words, names, choose](const std::string& given) {
-        const auto found = std::ranges::find(words, lower(given));
+        const auto found = std::ranges::find(words, core::lower_case(given));
         if (found == words.end()) {
           throw UsageError(names + ": " + given + " is not one of " + joined(words, ", "));
         }

@@ -5,10 +5,10 @@
 #include "capture/source/still_reader.h"
 #include "capture/source/video_source.h"
 #include "core/diagnostics/error.h"
+#include "core/text/lower_case.h"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,8 +23,7 @@ constexpr std::array<std::string_view, 6> kImageEndings{".jpg", ".jpeg", ".png",
 constexpr std::array<std::string_view, 3> kRecordings{"frames.avi", "frames.mkv", "frames.mp4"};
 
 bool is_image(const fs::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string ending = core::lower_case(path.extension().string());
   return std::find(kImageEndings.begin(), kImageEndings.end(), ending) != kImageEndings.end();
 }
 

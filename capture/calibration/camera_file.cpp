@@ -5,13 +5,13 @@
 #include "capture/files/text_file.h"
 #include "core/diagnostics/error.h"
 #include "core/files/staged_output.h"
+#include "core/text/lower_case.h"
 #include "core/text/number.h"
 
 #include <opencv2/core.hpp>
 #include <opencv2/core/persistence.hpp>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <initializer_list>
 #include <string>
@@ -47,14 +47,11 @@ class KeyReader {
 
   [[nodiscard]] std::string text(std::initializer_list<const char*> names) const {
     const auto* words = find(names);
-    std::string text = words != nullptr && !words->empty() ? words->front() : std::string();
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
+    return words != nullptr && !words->empty() ? core::lower_case(words->front()) : std::string();
   }
 
   [[nodiscard]] double number(const std::string& name, const std::string& word) const {
-    std::string lower = word;
-    for (char& c : lower) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    const std::string lower = core::lower_case(word);
     if (lower.ends_with(".nan") || lower.ends_with(".inf"))
       fail(name + " holds a number not finite");
     const auto value = core::parse_number(word);

@@ -3,6 +3,7 @@
 
 #include "capture/source/ffmpeg_owners.h"
 #include "capture/source/jpeg_decoder.h"
+#include "core/text/lower_case.h"
 #include "core/text/number.h"
 
 extern "C" {
@@ -10,7 +11,6 @@ extern "C" {
 }
 
 #include <algorithm>
-#include <cctype>
 
 namespace sheen::capture {
 namespace {
@@ -54,10 +54,7 @@ NetworkFault connection_fault(int status) {
 }  // namespace
 
 bool is_network_address(const std::string& address) {
-  std::string scheme = address.substr(0, address.find("://"));
-  std::ranges::transform(scheme, scheme.begin(), [](unsigned char letter) {
-    return static_cast<char>(std::tolower(letter));
-  });
+  const std::string scheme = core::lower_case(address.substr(0, address.find("://")));
   return address.size() > scheme.size() &&
          (scheme == "http" || scheme == "https" || scheme == "rtsp");
 }

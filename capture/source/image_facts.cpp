@@ -2,12 +2,12 @@
 #include "capture/source/image_facts.h"
 
 #include "capture/source/exif.h"
+#include "core/text/lower_case.h"
 
 #include <zlib.h>
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <map>
 #include <string_view>
 
@@ -211,8 +211,7 @@ std::optional<UnreadableKind> unreadable_kind(ImageKind kind) {
 }
 
 std::optional<UnreadableKind> unreadable_ending(const std::filesystem::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string ending = core::lower_case(path.extension().string());
   const auto is_one_of = [&ending](std::initializer_list<const char*> endings) {
     return std::find(endings.begin(), endings.end(), ending) != endings.end();
   };

@@ -14,6 +14,7 @@ using nlohmann::json;
 
 constexpr unsigned kByte = 5120, kUnsignedByte = 5121, kShort = 5122, kUnsignedShort = 5123,
                    kUnsignedInt = 5125, kFloat = 5126;
+constexpr std::size_t kMostUnpackedBytes = std::size_t{1} << 31;
 constexpr std::size_t kMostNumbers = std::size_t{1} << 28;
 constexpr std::size_t kMostZeros = 64;  // elements of an accessor without data, for a byte of file
 
@@ -119,13 +120,14 @@ GltfAccessors::View GltfAccessors::view(std::size_t index) {
   for (const char* name : {"EXT_meshopt_compression", "KHR_meshopt_compression"}) {
     const json* packed = gltf_extension(view, name);
     if (packed == nullptr) continue;
-    const auto known = unpacked_.find(index);
-    const auto& bytes =
-        known != unpacked_.end()
-            ? known->second
-            : unpacked_.emplace(index, unpack_meshopt(*packed, part_of_buffer(*packed)))
-                  .first->second;
-    return {bytes, gltf_size(*packed, "byteStride")};
+    auto known = unpacked_.find(index);
+    if (known == unpacked_.end()) {
+      auto bytes = unpack_meshopt(*packed, part_of_buffer(*packed));
+      unpacked_bytes_ += bytes.size();
+      if (unpacked_bytes_ > kMostUnpackedBytes) throw GltfFault("has arrays of impossible size");
+      known = unpacked_.emplace(index, std::move(bytes)).first;
+    }
+    return {known->second, gltf_size(*packed, "byteStride")};
   }
   return {part_of_buffer(view), gltf_size(view, "byteStride", 0)};
 }

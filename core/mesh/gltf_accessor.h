@@ -44,6 +44,7 @@ class GltfAccessors {
 
   const GltfContainer& gltf_;
   std::size_t numbers_read_ = 0;
+  std::size_t unpacked_bytes_ = 0;
   std::map<std::size_t, std::vector<std::byte>> unpacked_;  ///< compressed views, by index
 };
 

@@ -2,12 +2,12 @@
 #include "core/mesh/gltf_container.h"
 
 #include "core/diagnostics/error.h"
+#include "core/files/read_file.h"
+#include "core/text/json_depth.h"
 
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 
 namespace sheen::core {
 namespace {
@@ -145,9 +145,7 @@ const json* gltf_extension(const json& object, const char* name) {
 
 GltfContainer read_gltf_container(const std::filesystem::path& path) {
   GltfContainer gltf;
-  std::ifstream file(path, std::ios::binary);
-  gltf.file.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
-  if (!file.is_open() || file.bad()) throw bad_input(path, "cannot be read", "check permissions");
+  gltf.file = read_file(path);
   if (gltf.file.size() < kHeader + kChunkHeader || word_at(gltf.file, 0) != kMagic) {
     throw GltfFault("is not a binary glTF 2.0 file");
   }
@@ -158,6 +156,7 @@ GltfContainer read_gltf_container(const std::filesystem::path& path) {
   if (word_at(gltf.file, 8) > gltf.file.size()) throw GltfFault("is shorter than its header says");
   const auto text = chunk_at(gltf.file, kHeader, kJson);
   if (!text) throw GltfFault("is not a binary glTF 2.0 file");
+  if (json_depth(*text) > kMostJsonDepth) throw GltfFault("holds JSON that nests without end");
   gltf.document = json::parse(*text, nullptr, false);
   if (!gltf.document.is_object()) throw GltfFault("holds JSON that cannot be parsed");
   find_buffers(gltf, binary_chunk(gltf.file, kHeader + kChunkHeader + text->size()));

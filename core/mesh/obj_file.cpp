@@ -2,13 +2,12 @@
 #include "core/mesh/obj_file.h"
 
 #include "core/diagnostics/error.h"
+#include "core/files/read_file.h"
 #include "core/mesh/triangulate.h"
 #include "core/text/number.h"
 #include "core/text/text_form.h"
 
 #include <array>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <string_view>
 #include <unordered_map>
@@ -18,14 +17,6 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t";
 constexpr std::uint32_t kNoNormal = 0xffffffffU;
-
-std::string all_text(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string text((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (!file.is_open() || file.bad()) throw bad_input(path, "cannot be read", "check permissions");
-  normalise_text(text, path);
-  return text;
-}
 
 /// Takes the first word off `line`; empty at its end.
 std::string_view next_word(std::string_view& line) {
@@ -40,7 +31,8 @@ class ObjReader {
   explicit ObjReader(const std::filesystem::path& path) : path_(path) {}
 
   MeshFile read() {
-    std::string text = all_text(path_);
+    std::string text = read_file(path_);
+    normalise_text(text, path_);
     join_continued_lines(text);
     std::string_view rest = text;
     while (!rest.empty()) {

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "core/mesh/parts.h"
 
+#include "core/numerics/bit_key.h"
+
 #include <Eigen/Geometry>
 
 #include <array>
-#include <bit>
 #include <numeric>
 #include <unordered_map>
 
@@ -13,26 +14,16 @@ namespace {
 
 using PositionKey = std::array<std::uint32_t, 3>;
 
-struct PositionKeyHash {
-  std::size_t operator()(const PositionKey& key) const {
-    std::uint64_t hash = 0x9e3779b97f4a7c15u;
-    for (const std::uint32_t word : key) hash = std::rotl((hash ^ word) * 0xff51afd7ed558ccdu, 29);
-    return static_cast<std::size_t>(hash);
-  }
-};
-
 }  // namespace
 
 std::vector<std::uint32_t> first_at_position(const Mesh& mesh) {
-  std::unordered_map<PositionKey, std::uint32_t, PositionKeyHash> known;
+  std::unordered_map<PositionKey, std::uint32_t, BitKeyHash<3>> known;
   known.reserve(mesh.positions.size());
   std::vector<std::uint32_t> first(mesh.positions.size());
   for (std::size_t i = 0; i < first.size(); ++i) {
     PositionKey key{};
     for (int axis = 0; axis < 3; ++axis) {
-      // Adding zero makes -0 equal to 0.
-      key[static_cast<std::size_t>(axis)] =
-          std::bit_cast<std::uint32_t>(mesh.positions[i][axis] + 0.0f);
+      key[static_cast<std::size_t>(axis)] = bits_of(mesh.positions[i][axis]);
     }
     first[i] = known.try_emplace(key, static_cast<std::uint32_t>(i)).first->second;
   }

@@ -2,6 +2,7 @@
 #include "core/mesh/ply_file.h"
 
 #include "core/diagnostics/error.h"
+#include "core/files/read_file.h"
 #include "core/files/write_file.h"
 #include "core/mesh/ply_body.h"
 #include "core/mesh/ply_header.h"
@@ -14,7 +15,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -170,13 +170,6 @@ class FaceReader {
   std::vector<std::uint32_t> corners_;
 };
 
-std::string all_bytes(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  if (!file.is_open() || file.bad()) throw bad_input(path, "cannot be read", "check permissions");
-  return bytes;
-}
-
 template <typename T>
 void append_bytes(std::string& bytes, const T& value) {
   const auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
@@ -197,7 +190,7 @@ std::string header_text(const Mesh& mesh) {
 }  // namespace
 
 MeshFile read_ply(const std::filesystem::path& path) {
-  const std::string bytes = all_bytes(path);
+  const std::string bytes = read_file(path);
   const PlyHeader header = parse_ply_header(bytes, path);
   PlyBody body(std::string_view(bytes).substr(header.size_bytes), header.format, path);
   MeshFile mesh;

@@ -7,11 +7,11 @@
 #include "core/mesh/ply_file.h"
 #include "core/mesh/repair.h"
 #include "core/mesh/winding.h"
+#include "core/text/lower_case.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -27,15 +27,8 @@ constexpr double kDoubtfulGrid = 1e-4,
                  kUselessGrid = 0.02;  // steps of positions, of the mesh's size
 constexpr double kContradicting = 0.9, kFewContradicting = 0.1;  // shares of the normals
 
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
 void check_file(const fs::path& path) {
-  const std::string extension = lower_extension(path);
+  const std::string extension = lower_case(path.extension().string());
   if (extension != ".ply" && extension != ".obj" && extension != ".glb") {
     throw bad_input(path, "is not a mesh format that can be read", "convert it to PLY, OBJ or GLB");
   }
@@ -49,8 +42,8 @@ void check_file(const fs::path& path) {
   }
 }
 
-MeshFile read_file(const fs::path& path) {
-  const std::string extension = lower_extension(path);
+MeshFile read_mesh_file(const fs::path& path) {
+  const std::string extension = lower_case(path.extension().string());
   if (extension == ".ply") return read_ply(path);
   return extension == ".obj" ? read_obj(path) : read_glb(path);
 }
@@ -154,12 +147,12 @@ void judge_normals(Mesh& mesh, std::vector<std::string>& notes) {
 Mesh read_mesh(const std::filesystem::path& path, std::vector<std::string>* notes) {
   // Load.
   check_file(path);
-  MeshFile file = read_file(path);
+  MeshFile file = read_mesh_file(path);
   std::vector<std::string> said = std::move(file.notes);
   Mesh mesh = rounded(std::move(file), path, said);
 
   // Repair, from the corners to the surface.
-  if (lower_extension(path) == ".obj") join_identical_vertices(mesh);
+  if (lower_case(path.extension().string()) == ".obj") join_identical_vertices(mesh);
   drop_degenerate_triangles(mesh);
   if (mesh.triangles.empty()) {
     throw bad_input(path, "has no triangles", "give a surface, not a point cloud");

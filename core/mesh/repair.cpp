@@ -2,12 +2,12 @@
 #include "core/mesh/repair.h"
 
 #include "core/mesh/parts.h"
+#include "core/numerics/bit_key.h"
 
 #include <Eigen/Geometry>
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <unordered_map>
@@ -20,20 +20,11 @@ using Triangle = Eigen::Matrix<std::uint32_t, 3, 1>;
 /// Bit patterns of a position and, where they matter, a normal.
 using VertexKey = std::array<std::uint32_t, 6>;
 
-struct VertexKeyHash {
-  std::size_t operator()(const VertexKey& key) const {
-    std::uint64_t hash = 0x9e3779b97f4a7c15u;
-    for (const std::uint32_t word : key) hash = std::rotl((hash ^ word) * 0xff51afd7ed558ccdu, 29);
-    return static_cast<std::size_t>(hash);
-  }
-};
-
 VertexKey key_of(const Eigen::Vector3f& position, const Eigen::Vector3f& normal) {
   VertexKey key{};
   for (int axis = 0; axis < 3; ++axis) {
-    // Adding zero makes -0 equal to 0.
-    key[static_cast<std::size_t>(axis)] = std::bit_cast<std::uint32_t>(position[axis] + 0.0f);
-    key[static_cast<std::size_t>(axis) + 3] = std::bit_cast<std::uint32_t>(normal[axis] + 0.0f);
+    key[static_cast<std::size_t>(axis)] = bits_of(position[axis]);
+    key[static_cast<std::size_t>(axis) + 3] = bits_of(normal[axis]);
   }
   return key;
 }
@@ -94,7 +85,7 @@ bool is_closed(const Mesh& mesh) {
 
 void join_identical_vertices(Mesh& mesh) {
   const bool has_normals = !mesh.normals.empty();
-  std::unordered_map<VertexKey, std::uint32_t, VertexKeyHash> known;
+  std::unordered_map<VertexKey, std::uint32_t, BitKeyHash<6>> known;
   Mesh joined;
   for (Triangle& triangle : mesh.triangles) {
     for (std::uint32_t& corner : triangle) {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "core/mesh/triangle_neighbours.h"
 
+#include "core/mesh/parts.h"
+
 #include <algorithm>
-#include <numeric>
 #include <tuple>
 
 namespace sheen::core {
@@ -15,29 +16,11 @@ struct TriangleEdge {
   std::uint32_t side;
 };
 
-/// For every vertex the first one, in the order of positions, that stands at its place.
-std::vector<std::uint32_t> joined_by_position(const std::vector<Eigen::Vector3f>& positions) {
-  const auto before = [&](std::uint32_t a, std::uint32_t b) {
-    const auto& p = positions[a];
-    const auto& q = positions[b];
-    return std::tie(p.x(), p.y(), p.z(), a) < std::tie(q.x(), q.y(), q.z(), b);
-  };
-  std::vector<std::uint32_t> order(positions.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), before);
-  std::vector<std::uint32_t> joined(positions.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && positions[order[i]] == positions[order[i - 1]];
-    joined[order[i]] = same ? joined[order[i - 1]] : order[i];
-  }
-  return joined;
-}
-
 }  // namespace
 
 std::vector<std::array<std::uint32_t, 3>> triangle_neighbours(const Mesh& mesh) {
   // List the sides, those of one edge together.
-  const std::vector<std::uint32_t> joined = joined_by_position(mesh.positions);
+  const std::vector<std::uint32_t> joined = first_at_position(mesh);
   std::vector<TriangleEdge> sides;
   sides.reserve(3 * mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {

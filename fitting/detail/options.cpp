@@ -16,7 +16,7 @@ void Options::check() const {
 
 OptionTable option_table(Options& options) {
   OptionTable table = sparse::option_table(options.patches);
-  table.push_back(number_option(kTexelOption, options.texel_mm, 1e-4, 1e4,
+  table.push_back(number_option(kTexelOption, options.texel_mm, kLeastTexel_mm, kMostTexel_mm,
                                 "Side of a texel on the surface, mm (default: what a pixel covers "
                                 "there)"));
   return table;

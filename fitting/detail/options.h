@@ -22,6 +22,10 @@ struct Options {
 /// Name of the option that sets `texel_mm`.
 inline constexpr const char* kTexelOption = "texel-mm";
 
+/// What it may be.
+inline constexpr double kLeastTexel_mm = 1e-4;
+inline constexpr double kMostTexel_mm = 1e4;
+
 OptionTable option_table(Options& options);
 
 }  // namespace sheen::fitting::detail

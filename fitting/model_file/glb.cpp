@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/model_file/glb.h"
 
+#include "core/text/json_depth.h"
 #include "fitting/model_file/model_part.h"
 
 #include <bit>
@@ -78,6 +79,9 @@ Glb parse_glb(std::string_view file) {
   const std::string_view text = take_chunk(file, offset, kJsonChunk);
   const std::string_view binary = take_chunk(file, offset, kBinaryChunk);
   if (offset != file.size()) throw ModelFault("something follows its last chunk");
+  if (core::json_depth(text) > core::kMostJsonDepth) {
+    throw ModelFault("its JSON chunk nests without end");
+  }
   nlohmann::json document = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!document.is_object()) throw ModelFault("its JSON chunk cannot be parsed");
   return {std::move(document), std::as_bytes(std::span(binary))};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Bad input gets one clear line and exit code 2, and nothing existing is overwritten.
-#include "tests/app/program.h"
+#include "tests/app/copied_session.h"
 
 #include <gtest/gtest.h>
 
@@ -12,25 +12,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A copy of the sample session that a test may spoil, and a model that must survive.
-class BadInput : public testing::Test {
+/// A session that a test may spoil, and a model that must survive.
+class BadInput : public CopiedSession {
  protected:
-  BadInput() : session_(folder_.path() / "session"), model_(folder_.path() / "model.glb") {
-    fs::create_directories(session_);
-    for (const char* name :
-         {"session.json", "camera.yaml", "board.yaml", "object.ply", "frames.avi"}) {
-      fs::copy_file(sample_session() / name, session_ / name);
-    }
-    write_file(model_, "an earlier model");
-  }
-
-  void replace(const std::string& file, const std::string& pattern, const std::string& by) const {
-    const std::string before = read_file(session_ / file);
-    const std::string after = std::regex_replace(before, std::regex(pattern), by,
-                                                 std::regex_constants::format_first_only);
-    ASSERT_NE(before, after) << pattern << " is not in " << file;
-    write_file(session_ / file, after);
-  }
+  BadInput() { write_file(model_, "an earlier model"); }
 
   void cut(const fs::path& path, double fraction) const {
     const auto size = static_cast<double>(fs::file_size(path));
@@ -53,10 +38,6 @@ class BadInput : public testing::Test {
     EXPECT_NE(run.standard_error.find(subject), std::string::npos) << run.standard_error;
     EXPECT_TRUE(run.standard_output.empty()) << run.standard_output;
   }
-
-  TemporaryFolder folder_;
-  fs::path session_;
-  fs::path model_;
 };
 
 TEST_F(BadInput, MissingSession) {

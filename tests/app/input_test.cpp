@@ -2,7 +2,7 @@
 // Inputs whose numbers are of another unit or lie far away: read right, or refused with the cause
 // before anything is written.
 #include "core/mesh/read_mesh.h"
-#include "tests/app/program.h"
+#include "tests/app/copied_session.h"
 
 #include <gtest/gtest.h>
 
@@ -15,24 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A copy of the sample session whose files a test may change.
-class Input : public testing::Test {
+class Input : public CopiedSession {
  protected:
-  Input() : session_(folder_.path() / "session"), model_(folder_.path() / "model.glb") {
-    fs::create_directories(session_);
-    for (const char* name :
-         {"session.json", "camera.yaml", "board.yaml", "object.ply", "frames.avi"}) {
-      fs::copy_file(sample_session() / name, session_ / name);
-    }
-  }
-
-  void replace(const std::string& file, const std::string& pattern, const std::string& by) const {
-    const std::string before = read_file(session_ / file);
-    const std::string after = std::regex_replace(before, std::regex(pattern), by);
-    ASSERT_NE(before, after) << pattern << " is not in " << file;
-    write_file(session_ / file, after);
-  }
-
   /// Sizes and places of the tags in another unit.
   void scale_board(double factor) const {
     const std::string text = read_file(session_ / "board.yaml");
@@ -86,10 +70,6 @@ class Input : public testing::Test {
     EXPECT_NE(run.standard_error.find(file), std::string::npos) << run.standard_error;
     EXPECT_NE(run.standard_error.find(cause), std::string::npos) << run.standard_error;
   }
-
-  TemporaryFolder folder_;
-  fs::path session_;
-  fs::path model_;
 };
 
 TEST_F(Input, NoCommandWritesFromABoardInAnotherUnit) {

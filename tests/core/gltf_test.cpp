@@ -19,6 +19,8 @@
 namespace sheen::core {
 namespace {
 
+using testing::area_of;
+
 using tests::GlbBuilder;
 using tests::TemporaryFolder;
 using tests::write_file;
@@ -74,16 +76,6 @@ std::string fault_of_glb(const std::filesystem::path& path) {
   }
   ADD_FAILURE() << path << " was accepted";
   return {};
-}
-
-double area_of(const Mesh& mesh) {
-  double area = 0;
-  for (const auto& t : mesh.triangles) {
-    area += 0.5 * static_cast<double>((mesh.positions[t[1]] - mesh.positions[t[0]])
-                                          .cross(mesh.positions[t[2]] - mesh.positions[t[0]])
-                                          .norm());
-  }
-  return area;
 }
 
 class GltfTest : public ::testing::Test {

@@ -2,6 +2,7 @@
 #include "core/diagnostics/error.h"
 #include "core/mesh/read_mesh.h"
 #include "core/mesh/triangulate.h"
+#include "tests/core/shapes.h"
 #include "tests/support/temporary_folder.h"
 
 #include <Eigen/Geometry>
@@ -15,6 +16,8 @@
 
 namespace sheen::core {
 namespace {
+
+using testing::area_of;
 
 using tests::TemporaryFolder;
 using tests::write_file;
@@ -207,24 +210,14 @@ struct Arrow {
   }
 };
 
-double surface_area(const Mesh& mesh) {
-  double area = 0;
-  for (const auto& t : mesh.triangles) {
-    area += 0.5 * static_cast<double>((mesh.positions[t[1]] - mesh.positions[t[0]])
-                                          .cross(mesh.positions[t[2]] - mesh.positions[t[0]])
-                                          .norm());
-  }
-  return area;
-}
-
 TEST(ReadMesh, ConcaveFacesHaveTheirOutlinesAreaInPlyAndObj) {
   const TemporaryFolder folder;
   const Arrow arrow;
   for (int start = 0; start < 4; ++start) {
     const auto ply = read_mesh(write_file(folder / "arrow.ply", arrow.file(true, start)));
     const auto obj = read_mesh(write_file(folder / "arrow.obj", arrow.file(false, start)));
-    EXPECT_NEAR(surface_area(ply), arrow.area(), 1e-5) << start;
-    EXPECT_NEAR(surface_area(obj), arrow.area(), 1e-5) << start;
+    EXPECT_NEAR(area_of(ply), arrow.area(), 1e-5) << start;
+    EXPECT_NEAR(area_of(obj), arrow.area(), 1e-5) << start;
   }
 }
 
@@ -242,7 +235,7 @@ TEST(ReadMesh, TriangleStripsOfPlyAreTheSurface) {
           vertices + "13 0 1 2 3 4 5 6 7 -1 6 7 8 9\n");
   const Mesh mesh = read_mesh(path);
   EXPECT_EQ(mesh.triangles.size(), 8u);
-  EXPECT_NEAR(surface_area(mesh), 4, 1e-6);
+  EXPECT_NEAR(area_of(mesh), 4, 1e-6);
   for (const auto& normal : mesh.normals) EXPECT_EQ(normal, Eigen::Vector3f(0, 0, 1));
 }
 
@@ -297,7 +290,7 @@ TEST(ReadMesh, AMeshFarFromItsOriginKeepsItsShapeAndItsPlace) {
     }
     EXPECT_LT(nearest, 1e-6);
   }
-  EXPECT_NEAR(surface_area(mesh), 1e-4 * (arrow.area() + 0), 2e-4 * 1e-4 * arrow.area() + 1e-7);
+  EXPECT_NEAR(area_of(mesh), 1e-4 * (arrow.area() + 0), 2e-4 * 1e-4 * arrow.area() + 1e-7);
 }
 
 TEST(ReadMesh, CoordinatesRoundedFarAwayAreRefused) {

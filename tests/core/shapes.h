@@ -77,6 +77,17 @@ inline Mesh together(const Mesh& first, const Mesh& second) {
   return mesh;
 }
 
+/// Of all triangles together.
+inline double area_of(const Mesh& mesh) {
+  double area = 0;
+  for (const auto& t : mesh.triangles) {
+    area += 0.5 * static_cast<double>((mesh.positions[t[1]] - mesh.positions[t[0]])
+                                          .cross(mesh.positions[t[2]] - mesh.positions[t[0]])
+                                          .norm());
+  }
+  return area;
+}
+
 /// camera_from_object of a camera at z = `height` that looks down, its x along the object's.
 inline Eigen::Isometry3d camera_above(double height) {
   Eigen::Isometry3d camera_from_object = Eigen::Isometry3d::Identity();

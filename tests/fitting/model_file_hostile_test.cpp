@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/diagnostics/error.h"
+#include "core/text/json_depth.h"
 #include "fitting/model_file/checksum.h"
 #include "fitting/model_file/document.h"
 #include "fitting/model_file/glb.h"
@@ -261,6 +262,18 @@ TEST_F(HostileModelFile, DeepExtensionsDoNotCrash) {
   put(8, file.size());
   put(12, text.size());
   EXPECT_TRUE(refused(file));
+}
+
+// Nor may the checksum, which anybody can compute, open the way: copying 10,000 levels would need a
+// megabyte of stack, a hundred are refused already.
+TEST_F(HostileModelFile, NestedParametersAreRefused) {
+  EXPECT_TRUE(refused(with_new_checksum([](json& document, std::string&) {
+    json nest = json::array();
+    for (int level = 0; level < 100; ++level) nest = json::array({std::move(nest)});
+    document["extensions"][kExtension]["parameters"]["terms"] = std::move(nest);
+  })));
+  EXPECT_NE(message_.find("nests"), std::string::npos) << message_;
+  EXPECT_EQ(core::json_depth(R"({"a": "[[[", "b": [{}, "\\"], "\"[": []})"), 3u);
 }
 
 // The same for what the arrays hold. View 3 is the triangles, the last-but-one the coefficients.
