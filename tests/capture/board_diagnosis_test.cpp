@@ -11,22 +11,32 @@ namespace {
 
 const core::CameraModel kLens = make_camera(960, 720, true);
 
-/// Three images of a board, each changed by `spoil`.
-std::vector<Frame> images_of(const Board& board, const std::function<void(cv::Mat&)>& spoil = {}) {
-  std::vector<Frame> frames;
-  for (int i = 0; i < 3; ++i) {
-    Frame frame;
-    frame.index = i;
-    frame.image = render_board(board, kLens, look_at_board(0.5, 0.8 + 0.1 * i, 0.7 * i),
-                               {.supersampling = 3});
-    if (spoil) spoil(frame.image);
-    frames.push_back(std::move(frame));
-  }
+Board printed() {
+  return make_grid_board("tag36h11", 5, 4, 0.04, 0.052);
+}
+
+/// Three images of the printed board, drawn once (under sanitizers an image takes seconds).
+const std::vector<Frame>& images() {
+  static const std::vector<Frame> frames = [] {
+    std::vector<Frame> drawn(3);
+    for (int i = 0; i < 3; ++i) {
+      drawn[i].index = i;
+      drawn[i].image = render_board(printed(), kLens, look_at_board(0.5, 0.8 + 0.1 * i, 0.7 * i),
+                                    {.supersampling = 2});
+    }
+    return drawn;
+  }();
   return frames;
 }
 
-Board printed() {
-  return make_grid_board("tag36h11", 5, 4, 0.04, 0.052);
+/// The same, each changed by `spoil`.
+std::vector<Frame> images_spoilt_by(const std::function<void(cv::Mat&)>& spoil) {
+  std::vector<Frame> frames = images();
+  for (Frame& frame : frames) {
+    frame.image = frame.image.clone();
+    spoil(frame.image);
+  }
+  return frames;
 }
 
 PoseCause cause_of(const Board& stated, const std::vector<Frame>& frames, PoseRejection refusal,
@@ -42,7 +52,7 @@ void expect_cause(const PoseCause& cause, PoseSuspect suspect, const std::string
 }
 
 TEST(BoardDiagnosis, BlamesTheBoardForSizesTurnsAndMirroredPlaces) {
-  const std::vector<Frame> frames = images_of(printed());
+  const std::vector<Frame>& frames = images();
   Board board = printed();
   for (auto& [id, tag] : board.tags) tag.size_m = 0.03;
   expect_cause(cause_of(board, frames, PoseRejection::reprojection), PoseSuspect::board,
@@ -63,7 +73,7 @@ TEST(BoardDiagnosis, BlamesTheBoardForSizesTurnsAndMirroredPlaces) {
 }
 
 TEST(BoardDiagnosis, BlamesTheBoardForTagsThatItDoesNotHold) {
-  const std::vector<Frame> frames = images_of(printed());
+  const std::vector<Frame>& frames = images();
   Board board;
   board.family = "tag36h11";
   for (const auto& [id, tag] : printed().tags) board.tags[id + 100] = tag;
@@ -74,7 +84,7 @@ TEST(BoardDiagnosis, BlamesTheBoardForTagsThatItDoesNotHold) {
 }
 
 TEST(BoardDiagnosis, BlamesTheCameraFileForAnotherLens) {
-  const std::vector<Frame> frames = images_of(printed());
+  const std::vector<Frame>& frames = images();
   auto other = kLens.intrinsics();
   other.focal_px *= 1.4;  // of a larger image
   expect_cause(cause_of(printed(), frames, PoseRejection::reprojection, core::CameraModel(other)),
@@ -88,17 +98,16 @@ TEST(BoardDiagnosis, BlamesTheCameraFileForAnotherLens) {
 
 TEST(BoardDiagnosis, BlamesTheRecordingForWhatItShows) {
   const Board board = printed();
-  expect_cause(cause_of(board, images_of(board, [](cv::Mat& image) { cv::flip(image, image, 1); }),
+  expect_cause(cause_of(board, images_spoilt_by([](cv::Mat& image) { cv::flip(image, image, 1); }),
                         PoseRejection::no_tags),
                PoseSuspect::recording, "mirrored");
   expect_cause(
-      cause_of(board, images_of(board, [](cv::Mat& image) { cv::bitwise_not(image, image); }),
+      cause_of(board, images_spoilt_by([](cv::Mat& image) { cv::bitwise_not(image, image); }),
                PoseRejection::no_tags),
       PoseSuspect::recording, "white on black");
-  expect_cause(cause_of(board, images_of(board), PoseRejection::blur), PoseSuspect::recording,
-               "smeared");
+  expect_cause(cause_of(board, images(), PoseRejection::blur), PoseSuspect::recording, "smeared");
   const PoseCause dark =
-      cause_of(board, images_of(board, [](cv::Mat& image) { image = cv::Scalar::all(10); }),
+      cause_of(board, images_spoilt_by([](cv::Mat& image) { image = cv::Scalar::all(10); }),
                PoseRejection::no_tags);
   expect_cause(dark, PoseSuspect::recording, "no tag");
   EXPECT_FALSE(dark.is_sure);
