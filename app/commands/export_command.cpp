@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/export_command.h"
 
-#include "core/diagnostics/error.h"
+#include "app/commands/export_cost.h"
+#include "app/commands/frame_options.h"
 #include "exporters/format.h"
 #include "fitting/model_file/model_file.h"
 
@@ -17,7 +18,9 @@ namespace {
 struct ExportOptions {
   std::filesystem::path model;
   std::filesystem::path output;
-  fitting::OptionValues given;  ///< of the format
+  fitting::OptionValues given;    ///< of the format
+  std::filesystem::path session;  ///< whose views the conversion is measured on; empty: none
+  pipeline::FrameChoice frames;
 };
 
 /// Settings of all formats by name: the format that each belongs to, for the help.
@@ -75,6 +78,12 @@ void run_export(const ExportOptions& options, const CommandContext& context) {
     text +=
         fmt::format("written  {} ({:.2f} MB)\n", file.string(), static_cast<double>(bytes) / 1e6);
   }
+  if (written.as_read) {
+    const ConversionCost cost =
+        conversion_cost(model, *written.as_read, options.session, options.frames, context);
+    document["cost"] = to_json(cost);
+    text += to_text(cost);
+  }
   for (const std::string& remark : written.remarks) context.note(remark);
   context.publish(document, text);
 }
@@ -92,6 +101,16 @@ void add_export_command(CommandLine& program, CommandContext& context) {
                   "Example:\n  sheen export model.glb -o viewer.html --title \"My vase\"");
   command.option("model", options->model, "Model file (.glb)").required();
   command.option("-o,--output", options->output, "File to write").required().type("FILE");
+  command
+      .option("--views", options->session,
+              "Also measure what the conversion costs on the views of this session")
+      .type("SESSION");
+  command
+      .option("--hold-out", options->frames.hold_out,
+              "Only the frames that replay --hold-out N kept out; 0: all")
+      .not_negative()
+      .show_default();
+  add_frame_options(command, options->frames);
   for (const FormatOption& known : format_options()) {
     const std::string name = known.option.name;
     const auto take = [options, name](const std::string& text) { options->given[name] = text; };
