@@ -127,10 +127,11 @@ export class Surface {
     gl.drawElements(gl.TRIANGLES, this.indexCount, gl.UNSIGNED_INT, 0);
   }
 
-  /** Share of the patches turned to an eye whose direction has been looked from (or nearly), [0, 1]. */
-  supportedFrom(eye) {
+  /** Share of the surface turned to an eye whose direction has been looked from (or nearly), [0, 1];
+   * of about so many of its patches. */
+  supportedFrom(eye, samples = 3000) {
     if (!this.cells) return 1;
-    const stride = Math.max(1, Math.floor(this.patches / 3000));
+    const stride = Math.max(1, Math.floor(this.patches / samples));
     let facing = 0;
     let supported = 0;
     for (let patch = 0; patch < this.patches; patch += stride) {
