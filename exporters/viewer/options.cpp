@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "exporters/viewer/options.h"
 
-#include <algorithm>
+#include <string>
 
 namespace sheen::exporters::viewer {
 namespace {
@@ -14,6 +14,10 @@ bool is_colour(const std::string& text) {
 }  // namespace
 
 void Options::check() const {
+  const bool is_axis = up.size() == 1 || (up.size() == 2 && up.front() == '-');
+  if (!is_axis || std::string("xyz").find(up.back()) == std::string::npos) {
+    fitting::refuse_value("up", up, "x|y|z|-x|-y|-z");
+  }
   if (background != "dark" && background != "light" && !is_colour(background)) {
     fitting::refuse_value("background", background, "dark, light or a colour such as #204060");
   }
@@ -28,6 +32,7 @@ fitting::OptionTable option_table(Options& options) {
   return {text("title", "TEXT", "Title of the page (default: the file's name)", options.title),
           text("background", "dark|light|#rrggbb", "Background that the page opens with",
                options.background),
+          text("up", "x|y|z|-x|-y|-z", "Axis of the object that points upwards", options.up),
           text("poster", "FILE.png",
                "Picture that is shown until the model is there, and where it cannot be drawn",
                options.poster)};

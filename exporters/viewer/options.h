@@ -11,6 +11,7 @@ namespace sheen::exporters::viewer {
 struct Options {
   std::string title;                ///< of the page; empty: the file's name
   std::string background = "dark";  ///< dark, light or #rrggbb
+  std::string up = "z";             ///< upright axis of the object: x, y, z, -x, -y or -z
   std::filesystem::path poster;     ///< picture shown until the model is there; empty: none
 
   /// Throws std::invalid_argument.

@@ -159,6 +159,7 @@ Page make_page(const fitting::Model& model, const Options& options) {
       {"texels", texels.texels_per_patch}, {"step", texels.step}, {"lastStep", texels.last_step}};
   document["patch"].update(texels.shader);
   document["background"] = options.background;
+  document["up"] = options.up;
   document["facts"] = {{"representation", model.light_field->representation()},
                        {"patches", patches.patch_count()},
                        {"observed", std::count(observed.begin(), observed.end(), std::uint8_t{1})},

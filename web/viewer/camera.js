@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A camera that goes round the object: azimuth and elevation about the upright axis z, as in
+// A camera that goes round the object: azimuth and elevation about the upright axis, as in
 // app/preview/orbit_camera. Object frame, metres.
 
 const HALF_HEIGHT = 0.3153;  // tan(35 degrees / 2)
@@ -12,8 +12,16 @@ const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a
 const unit = (a) => a.map((x) => x / Math.hypot(...a));
 const between = (x, least, most) => Math.min(Math.max(x, least), most);
 
+/** Two level axes and the upright one, right-handed; `name`: "z", "-y", ... */
+function uprightAxes(name) {
+  const up = ["x", "y", "z"].map((axis) => (name.endsWith(axis) ? (name.startsWith("-") ? -1 : 1) : 0));
+  const helper = up[0] === 0 ? [1, 0, 0] : [0, 1, 0];
+  return [helper, cross(up, helper), up];
+}
+
 export class OrbitCamera {
-  constructor(centre, radius) {
+  constructor(centre, radius, up) {
+    this.axes = uprightAxes(up);
     this.centre = centre;
     this.radius = radius;
     this.aspect = 1;
@@ -32,7 +40,8 @@ export class OrbitCamera {
   get distance() { return this.wholeDistance * this.zoomed; }
   get back() {
     const level = Math.cos(this.elevation);
-    return [level * Math.cos(this.azimuth), level * Math.sin(this.azimuth), Math.sin(this.elevation)];
+    const parts = [level * Math.cos(this.azimuth), level * Math.sin(this.azimuth), Math.sin(this.elevation)];
+    return this.axes.reduce((sum, axis, i) => add(sum, axis, parts[i]), [0, 0, 0]);
   }
   get eye() { return add(this.target, this.back, this.distance); }
 
@@ -42,7 +51,7 @@ export class OrbitCamera {
     this.elevation = between(this.elevation + Math.PI * y, -HIGHEST, HIGHEST);
   }
   pan(x, y) {
-    const right = unit(cross([0, 0, 1], this.back));
+    const right = unit(cross(this.axes[2], this.back));
     const up = cross(this.back, right);
     const height = 2 * HALF_HEIGHT * this.distance;
     this.target = add(add(this.target, right, -x * height), up, y * height);
@@ -52,7 +61,7 @@ export class OrbitCamera {
   /** Column-major, as OpenGL has it. */
   clipFromObject() {
     const { back, eye } = this;
-    const right = unit(cross([0, 0, 1], back));
+    const right = unit(cross(this.axes[2], back));
     const up = cross(back, right);
     const near = Math.max(this.distance - 3 * this.radius - Math.hypot(...add(this.target, this.centre, -1)), 0.003 * this.radius);
     const far = near + 8 * this.radius + this.distance + Math.hypot(...add(this.target, this.centre, -1));

@@ -55,7 +55,7 @@ function tellFacts({ facts }) {
 class Viewer {
   constructor(canvas, gl, model, surface) {
     Object.assign(this, { canvas, gl, model, surface });
-    this.camera = new OrbitCamera(surface.centre, surface.radius);
+    this.camera = new OrbitCamera(surface.centre, surface.radius, model.up);
     this.split = 0.5;
     this.comparing = this.confidence = this.turning = false;
     this.fading = true;
