@@ -183,7 +183,7 @@ def check_without_webgl(browser, page):
     """A browser without WebGL 2 is told so in a sentence."""
     script = browser.call("Page.addScriptToEvaluateOnNewDocument", source="HTMLCanvasElement.prototype.getContext = () => null")
     browser.open(page.as_uri(), "document.getElementById('fault')?.hidden === false")
-    assert "WebGL 2" in browser.value("document.getElementById('fault').textContent")
+    assert "WebGL\u00a02" in browser.value("document.getElementById('fault').textContent")
     browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier=script["identifier"])
 
 

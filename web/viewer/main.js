@@ -198,7 +198,7 @@ async function start() {
   showGround(model.background);
   const canvas = byId("picture");
   const gl = canvas.getContext("webgl2", { alpha: true, antialias: true, powerPreference: "high-performance" });
-  if (!gl) throw new Error("This browser cannot draw the model: it has no WebGL 2. A current Firefox, Chrome, Edge or Safari has it.");
+  if (!gl) throw new Error("This browser cannot draw the model: it has no WebGL\u00a02. A current Firefox, Chrome, Edge or Safari has it.");
   if (!window.DecompressionStream) throw new Error("This browser is too old to unpack the model. A current Firefox, Chrome, Edge or Safari can.");
   await pageLoaded(model.pieces, (part) => showProgress(0.7 * part));
   tellFacts(model);
