@@ -25,6 +25,7 @@ export class OrbitCamera {
     this.centre = centre;
     this.radius = radius;
     this.aspect = 1;
+    this.lift = 0;  // share of the height, at the bottom, that the object keeps clear of
     this.home = { azimuth: -1, elevation: 0.5 };
     this.reset();
   }
@@ -35,7 +36,7 @@ export class OrbitCamera {
 
   /** Distance at which the whole object is seen, whichever side of the picture is shorter. */
   get wholeDistance() {
-    return this.radius / (FILL * Math.sin(Math.atan(HALF_HEIGHT * Math.min(1, this.aspect))));
+    return this.radius / (FILL * Math.sin(Math.atan(HALF_HEIGHT * Math.min(1 - this.lift, this.aspect))));
   }
   get distance() { return this.wholeDistance * this.zoomed; }
   get back() {
@@ -71,6 +72,7 @@ export class OrbitCamera {
     const b = -2 * far * near / (far - near);
     const rows = [[...right, -dot(right, eye)].map((x) => sx * x), [...up, -dot(up, eye)].map((x) => sy * x),
                   [...back.map((x) => -a * x), a * dot(back, eye) + b], [...back.map((x) => -x), dot(back, eye)]];
+    rows[1] = add(rows[1], rows[3], this.lift);
     return Float32Array.from({ length: 16 }, (_, i) => rows[i % 4][i >> 2]);
   }
 }

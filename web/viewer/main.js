@@ -169,6 +169,7 @@ class Viewer {
     const height = Math.max(1, Math.round(canvas.clientHeight * density));
     if (canvas.width !== width || canvas.height !== height) Object.assign(canvas, { width, height });
     this.camera.aspect = width / height;
+    this.camera.lift = "bare" in document.body.dataset ? 0 : Math.min(84 / canvas.clientHeight, 0.3);  // the tools
     this.surface.draw(this.camera, {
       split: this.comparing ? this.split : -1, confidence: this.confidence, fading: this.fading });
   }
