@@ -91,11 +91,11 @@ def bash_completion(commands: list[Command]) -> str:
     names = " ".join(command.name for command in commands)
     return "\n".join([
         "# bash completion of sheen", "_sheen() {", "  local current=${COMP_WORDS[COMP_CWORD]} options= words=",
-        "  if ((COMP_CWORD == 1)); then", f'    mapfile -t COMPREPLY < <(compgen -W "{names} --help --version" -- "$current")',
+        "  if ((COMP_CWORD == 1)); then", f'    COMPREPLY=($(compgen -W "{names} --help --version" -- "$current"))',
         "    return", "  fi", "  case ${COMP_WORDS[1]}:${COMP_WORDS[COMP_CWORD - 1]} in", *choices, "  esac",
         "  case ${COMP_WORDS[1]} in", *cases, "  esac", "  if [[ -z $words && $current == -* ]]; then words=$options; fi",
         "  # Other arguments are files: readline's default.",
-        '  mapfile -t COMPREPLY < <([[ -z $words ]] || compgen -W "$words" -- "$current")', "}",
+        '  COMPREPLY=($([[ -z $words ]] || compgen -W "$words" -- "$current"))', "}",
         "complete -o default -F _sheen sheen", ""])
 
 
