@@ -4,6 +4,7 @@
 #include "app/commands/capture.h"
 #include "app/commands/compare.h"
 #include "app/commands/evaluate.h"
+#include "app/commands/export_command.h"
 #include "app/commands/info.h"
 #include "app/commands/register.h"
 #include "app/commands/render.h"
@@ -48,6 +49,7 @@ int main(int argc, char** argv) {
   app::add_replay_command(program, context);
   app::add_render_command(program, context);
   app::add_evaluate_command(program, context);
+  app::add_export_command(program, context);
   app::add_compare_command(program, context);
   app::add_synth_command(program, context);
   app::add_info_command(program, context);

@@ -6,6 +6,7 @@
 namespace sheen::pipeline {
 
 FitStage::FitStage(Parts parts) : parts_(std::move(parts)) {
+  statistics_.seen.resize(parts_.mesh.positions.size());
   if (parts_.photometric.refine_poses || parts_.photometric.exposure) {
     aligner_.emplace(parts_.mesh, parts_.photometric.pose_error_px);
   }
@@ -58,6 +59,7 @@ void FitStage::observe(const capture::Frame& frame, core::StageTimes& times, Pos
     ++statistics_.frames_refused;
     return;
   }
+  fitting::note_seen(*samples, statistics_.seen);
   integrated_.push_back({frame.index, camera_from_object, gain});
   fit({frame.index, frame.image, camera, camera_from_object, parts_.observer.view(), *samples,
        gain},

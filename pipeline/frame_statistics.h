@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/samples/vertex_view.h"
+#include "fitting/confidence/confidence.h"
 
 #include <Eigen/Geometry>
 
@@ -35,6 +36,9 @@ struct FrameStatistics {
   std::vector<PosedFrame> held_out;            ///< posed, kept out of the fit
   std::map<std::string, int> pose_rejections;  ///< by name of PoseRejection
   std::array<std::size_t, core::kVertexRejectionCount> vertex_rejections{};
+  /// From where each patch was looked at by the frames that were fitted. Views that are taken back
+  /// later still count.
+  fitting::SeenDirections seen;
   std::vector<double> reprojection_px;  ///< of frames posed from tags
   std::vector<double> refined_px;       ///< mean motion of every frame whose pose was refined
   std::vector<double> gains;            ///< exposure of every frame that told it

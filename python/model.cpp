@@ -26,11 +26,12 @@ struct Model {
   std::shared_ptr<const void> owner;
   const core::Mesh* mesh = nullptr;
   const fitting::LightField* light_field = nullptr;
+  fitting::SeenDirections seen{};
   std::optional<pipeline::FrameStatistics> frames{};  ///< of a reconstruction
 };
 
 Model model_of(std::shared_ptr<const fitting::Model> file) {
-  return {file, &file->mesh, file->light_field.get()};
+  return {file, &file->mesh, file->light_field.get(), file->seen};
 }
 
 /// Numbers that lie in `owner`, seen from Python without a copy and not to be written.
@@ -143,7 +144,7 @@ Model reconstruct(const capture::Session& session, const std::string& representa
       pipeline::reconstruct({.session = session}, settings, sink));
   const core::Mesh& mesh = fitted->mesh();
   const fitting::LightField& light_field = fitted->light_field();
-  return {fitted, &mesh, &light_field, fitted->frames()};
+  return {fitted, &mesh, &light_field, fitted->frames().seen, fitted->frames()};
 }
 
 std::string describe(const Model& model) {
@@ -238,7 +239,7 @@ void bind_model(py::module_& module) {
       .def(
           "write",
           [](const Model& self, const std::filesystem::path& path) {
-            fitting::write_model(path, *self.mesh, *self.light_field);
+            fitting::write_model(path, *self.mesh, *self.light_field, self.seen);
           },
           py::arg("path"), "Writes a .glb; an old file stays until the new one is complete.")
       .def("__repr__", &describe);

@@ -66,9 +66,10 @@ void write_poses(const std::filesystem::path& path, const std::vector<PosedFrame
 }
 
 void save(const ReplayOptions& options, const Reconstruction& fitted) {
-  fitting::write_model(options.output, fitted.mesh(), fitted.light_field());
+  fitting::write_model(options.output, fitted.mesh(), fitted.light_field(), fitted.frames().seen);
   if (!options.mean_output.empty()) {
-    fitting::write_model(options.mean_output, fitted.mesh(), *fitted.mean_colours());
+    fitting::write_model(options.mean_output, fitted.mesh(), *fitted.mean_colours(),
+                         fitted.frames().seen);
   }
   if (!options.poses_output.empty()) write_poses(options.poses_output, fitted.frames().posed);
 }

@@ -24,7 +24,7 @@ int main(int argc, char** argv) try {
   std::printf("patch 0 from above: sRGB %.3f %.3f %.3f\n", static_cast<double>(rgb.x()),
               static_cast<double>(rgb.y()), static_cast<double>(rgb.z()));
 
-  sheen::fitting::write_model(argv[2], fitted.mesh(), fitted.light_field());
+  sheen::fitting::write_model(argv[2], fitted.mesh(), fitted.light_field(), fitted.frames().seen);
   return 0;
 } catch (const sheen::core::Error& error) {
   return std::fprintf(stderr, "%s\n", error.what()), 1;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/mesh/mesh.h"
+#include "fitting/confidence/confidence.h"
 #include "fitting/light_field.h"
 
 #include <cstddef>
@@ -14,6 +15,7 @@ namespace sheen::fitting {
 struct Model {
   core::Mesh mesh;
   std::unique_ptr<const LightField> light_field;
+  SeenDirections seen = {};  ///< of every patch; empty where the file does not say
 };
 
 /// Bytes of a light field in a model file: those of its arrays and of its texture's image, without
@@ -21,9 +23,10 @@ struct Model {
 std::size_t byte_size(const LightField& light_field);
 
 /// Writes a binary glTF 2.0 file with the extension SHEEN_surface_light_field (docs/formats.md,
-/// "model"), beside its final name and then moved into place. Equal models give equal bytes.
+/// "model"), beside its final name and then moved into place. Equal models give equal bytes. `seen`
+/// has an entry per patch, or none.
 void write_model(const std::filesystem::path& path, const core::Mesh& mesh,
-                 const LightField& light_field);
+                 const LightField& light_field, const SeenDirections& seen = {});
 
 /// Reads it back, bit by bit what was written. Throws core::Error (bad_input) for truncated,
 /// altered or foreign files.

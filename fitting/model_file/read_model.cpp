@@ -188,6 +188,18 @@ Eigen::Vector3d read_offset(const json& extension) {
   return offset;
 }
 
+/// From where every patch was looked at, if the file says.
+SeenDirections read_seen(const Glb& glb, const json& extension, std::size_t patch_count) {
+  if (!extension.contains("seen")) return {};
+  const auto bytes = view_bytes(glb, required_size(extension, "seen"));
+  SeenDirections seen(patch_count);
+  if (bytes.size() != patch_count * sizeof(seen[0])) {
+    throw ModelFault("it has not one set of seen directions per vertex");
+  }
+  std::memcpy(seen.data(), bytes.data(), bytes.size());
+  return seen;
+}
+
 ModelPart read_part(const Glb& glb, const json& extension) {
   ModelPart part;
   part.parameters = required(extension, "parameters");
@@ -229,6 +241,7 @@ Model parse_model(const std::string& file) {
   ModelPart part = read_part(glb, extension);
   if (texture) part.texture = &*texture;
   model.light_field = decode_light_field(extension, part, model.mesh);
+  model.seen = read_seen(glb, extension, model.mesh.positions.size());
   return model;
 }
 

@@ -176,7 +176,8 @@ std::size_t byte_size(const LightField& light_field) {
 }
 
 void write_model(const std::filesystem::path& path, const core::Mesh& mesh,
-                 const LightField& light_field) {
+                 const LightField& light_field, const SeenDirections& seen) {
+  assert(seen.empty() || seen.size() == mesh.positions.size());
   assert(!mesh.positions.empty() && !mesh.triangles.empty());
   DocumentBuilder builder;
   add_scene(builder.document);
@@ -187,6 +188,9 @@ void write_model(const std::filesystem::path& path, const core::Mesh& mesh,
     add_coloured_mesh(mesh, light_field, builder);
   }
   add_light_field(light_field, part, builder);
+  if (!seen.empty()) {
+    builder.document["extensions"][kExtension]["seen"] = builder.add_view(bytes_of(seen));
+  }
   add_offset(mesh.offset, builder.document);
   builder.document["buffers"] = {{{"byteLength", builder.binary.size()}}};
   std::optional<std::string> bytes = glb_bytes(builder.document, builder.binary);

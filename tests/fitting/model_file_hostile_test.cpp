@@ -106,6 +106,10 @@ TEST_F(HostileModelFile, BrokenStructureIsRefused) {
       [](json& d) { d["extensions"][kExtension]["representation"] = "mean"; },
       [](json& d) { d["extensions"][kExtension]["representation"] = 7; },
       [](json& d) { d["extensions"][kExtension]["directionMap"] = "octahedral"; },
+      [](json& d) { d["extensions"][kExtension]["seen"] = 0; },  // 72 bytes instead of 48
+      [](json& d) { d["extensions"][kExtension]["seen"] = 1000; },
+      [](json& d) { d["extensions"][kExtension]["seen"] = -1; },
+      [](json& d) { d["extensions"][kExtension]["seen"] = "all"; },
       [](json& d) { d["extensions"][kExtension]["parameters"]["terms"] = 4; },
       [](json& d) { d["extensions"][kExtension]["parameters"]["terms"] = 6; },
       [](json& d) { d["extensions"][kExtension]["parameters"]["terms"] = -3; },

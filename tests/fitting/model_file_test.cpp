@@ -55,6 +55,19 @@ void expect_round_trip(const std::string& name, const OptionValues& options) {
   EXPECT_TRUE(read_file(folder / "a.glb") == read_file(folder / "b.glb"));
 }
 
+TEST(ModelFile, KeepsFromWhereItWasLookedAt) {
+  const tests::TemporaryFolder folder;
+  const core::Mesh mesh = octahedron();
+  const auto fitter = fitted("mean", mesh, {});
+  SeenDirections seen(mesh.positions.size());
+  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = 0x8000000000000001U * (i + 1);
+  write_model(folder / "a.glb", mesh, fitter->light_field(), seen);
+  EXPECT_EQ(read_model(folder / "a.glb").seen, seen);
+  // A file that does not say is one of before, and stays readable.
+  write_model(folder / "b.glb", mesh, fitter->light_field());
+  EXPECT_TRUE(read_model(folder / "b.glb").seen.empty());
+}
+
 TEST(ModelFile, ReadsBackBitByBit) {
   expect_round_trip("mean", {});
   for (const int terms : {0, 1, 3, 6}) {

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: MIT
+// The mesh: from tables to buffers, and drawn.
+import { surfaceProgram } from "./program.js";
+import * as textures from "./textures.js";
+
+function positionsOf(table, { lowest, step }) {
+  const positions = new Float32Array(3 * table.rows);
+  for (let axis = 0; axis < 3; ++axis) {
+    for (let row = 0; row < table.rows; ++row) positions[3 * row + axis] = lowest[axis] + step * table.column[axis][row];
+  }
+  return positions;
+}
+
+/** Normals from the octahedron; the sign of z stays even where z is zero. */
+function normalsOf(table) {
+  const normals = new Float32Array(3 * table.rows);
+  const [xs, ys, signs] = table.column;
+  for (let row = 0; row < table.rows; ++row) {
+    const x = xs[row] / 32767 - 1;
+    const y = ys[row] / 32767 - 1;
+    const z = Math.max(1 - Math.abs(x) - Math.abs(y), 0);
+    const length = Math.hypot(x, y, z) || 1;
+    normals[3 * row] = x / length;
+    normals[3 * row + 1] = y / length;
+    normals[3 * row + 2] = (signs[row] ? -z : z) / length;
+  }
+  return normals;
+}
+
+/** Vertices repeated where the texture has a seam. */
+function withCopies(values, perVertex, copies) {
+  if (!copies) return values;
+  const all = new values.constructor(values.length + copies.length * perVertex);
+  all.set(values);
+  copies.forEach((vertex, i) => {
+    all.set(values.subarray(vertex * perVertex, (vertex + 1) * perVertex), values.length + i * perVertex);
+  });
+  return all;
+}
+
+function interleaved(columns) {
+  const all = new columns[0].constructor(columns[0].length * columns.length);
+  columns.forEach((column, c) => column.forEach((x, row) => { all[row * columns.length + c] = x; }));
+  return all;
+}
+
+export class Surface {
+  constructor(gl, model, tables, texture) {
+    this.gl = gl;
+    this.patches = tables.positions.rows;
+    this.positions = positionsOf(tables.positions, model.surface);
+    this.normals = normalsOf(tables.normals);
+    this.cells = tables.confidence ? textures.confidenceCells(tables.confidence) : null;
+    this.measure();
+    this.makeBuffers(tables);
+
+    // Textures, each in a unit of its own.
+    this.textures = [["patch_coefficients", textures.patchTexture(gl, tables.patches, model.patch)]];
+    // The renderer's shaders have names of their own for it.
+    this.textures[0][0] = { sparse: "patch_terms", mean: "patch_colours" }[model.patch.shader] || "patch_coefficients";
+    if (model.patch.atoms) this.textures.push(["atoms", textures.atomTexture(gl, model.patch.atoms)]);
+    if (tables.means) this.textures.push(["patch_means", textures.meanTexture(gl, tables.means)]);
+    if (this.cells) this.textures.push(["patch_confidence", textures.confidenceTexture(gl, this.cells)]);
+    if (texture) this.textures.push(["surface_texture", texture]);
+    const features = [texture && "TEXTURED", tables.means && "MEANS", this.cells && "CONFIDENCE"].filter(Boolean);
+    this.program = surfaceProgram(gl, model.patch, this.patches, features);
+  }
+
+  /** Centre and radius of the sphere that pictures are framed by. */
+  measure() {
+    const low = [Infinity, Infinity, Infinity];
+    const high = [-Infinity, -Infinity, -Infinity];
+    this.positions.forEach((x, i) => {
+      low[i % 3] = Math.min(low[i % 3], x);
+      high[i % 3] = Math.max(high[i % 3], x);
+    });
+    this.centre = low.map((x, i) => (x + high[i]) / 2);
+    this.radius = 1e-6;
+    for (let i = 0; i < this.positions.length; i += 3) {
+      this.radius = Math.max(this.radius, Math.hypot(...this.centre.map((x, k) => this.positions[i + k] - x)));
+    }
+  }
+
+  makeBuffers(tables) {
+    const { gl } = this;
+    const copies = tables.copies?.column[0];
+    const own = Uint32Array.from({ length: this.patches }, (_, i) => i);
+    gl.bindVertexArray(gl.createVertexArray());
+    const attribute = (location, data, define) => {
+      gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+      gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
+      gl.enableVertexAttribArray(location);
+      define(location);
+    };
+    attribute(0, withCopies(this.positions, 3, copies), (l) => gl.vertexAttribPointer(l, 3, gl.FLOAT, false, 0, 0));
+    attribute(1, withCopies(this.normals, 3, copies), (l) => gl.vertexAttribPointer(l, 3, gl.FLOAT, false, 0, 0));
+    attribute(2, withCopies(own, 1, copies), (l) => gl.vertexAttribIPointer(l, 1, gl.UNSIGNED_INT, 0, 0));
+    if (tables.places) {
+      attribute(3, interleaved(tables.places.column),
+                (l) => gl.vertexAttribPointer(l, 2, gl.UNSIGNED_SHORT, true, 0, 0));
+    }
+    const triangles = interleaved(tables.triangles.column);
+    this.indexCount = triangles.length;
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+    gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, triangles, gl.STATIC_DRAW);
+  }
+
+  draw(camera, { split, confidence, fading }) {
+    const { gl, program } = this;
+    const uniform = (name) => gl.getUniformLocation(program, name);
+    gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.enable(gl.DEPTH_TEST);
+    gl.enable(gl.CULL_FACE);
+    gl.useProgram(program);
+    this.textures.forEach(([name, texture], unit) => {
+      gl.activeTexture(gl.TEXTURE0 + unit);
+      gl.bindTexture(gl.TEXTURE_2D, texture);
+      gl.uniform1i(uniform(name), unit);
+    });
+    gl.uniformMatrix4fv(uniform("clip_from_object"), false, camera.clipFromObject());
+    gl.uniform4f(uniform("eye_and_near"), ...camera.eye, 0);
+    gl.uniform1f(uniform("split_px"), split * gl.drawingBufferWidth);
+    gl.uniform1i(uniform("show_confidence"), confidence ? 1 : 0);
+    gl.uniform1i(uniform("fading"), fading ? 1 : 0);
+    gl.drawElements(gl.TRIANGLES, this.indexCount, gl.UNSIGNED_INT, 0);
+  }
+
+  /** Share of the surface turned to an eye whose direction has been looked from (or nearly), [0, 1];
+   * of about so many of its patches. */
+  supportedFrom(eye, samples = 3000) {
+    if (!this.cells) return 1;
+    const stride = Math.max(1, Math.floor(this.patches / samples));
+    let facing = 0;
+    let supported = 0;
+    for (let patch = 0; patch < this.patches; patch += stride) {
+      const i = 3 * patch;
+      const n = this.normals.subarray(i, i + 3);
+      const w = [0, 1, 2].map((k) => eye[k] - this.positions[i + k]);
+      const length = Math.hypot(...w);
+      const cosine = (w[0] * n[0] + w[1] * n[1] + w[2] * n[2]) / length;
+      if (cosine < 0.2) continue;
+      // The direction on the patch's disc, as render/shaders/direction.glsl has it.
+      const s = n[2] < 0 || Object.is(n[2], -0) ? -1 : 1;
+      const a = -1 / (s + n[2]);
+      const b = n[0] * n[1] * a;
+      const u = (w[0] * (1 + s * n[0] * n[0] * a) + w[1] * s * b - w[2] * s * n[0]) / length;
+      const v = (w[0] * b + w[1] * (s + n[1] * n[1] * a) - w[2] * n[1]) / length;
+      const cell = (x) => Math.min(Math.max(Math.floor((x + 1) * 4), 0), 7);
+      facing += cosine;
+      if (this.cells[64 * patch + 8 * cell(v) + cell(u)] >= 128) supported += cosine;
+    }
+    return facing > 0 ? supported / facing : 1;
+  }
+}
