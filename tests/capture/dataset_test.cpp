@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 #include "capture/dataset/colmap_files.h"
+#include "capture/dataset/import_session.h"
 #include "capture/dataset/transforms_file.h"
+#include "capture/pose/trajectory.h"
+#include "capture/session/session.h"
 #include "tests/capture/expect_bad_input.h"
 #include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 
@@ -213,6 +217,76 @@ TEST(Dataset, real_transforms_of_instant_ngp) {
   for (const DatasetFrame& frame : dataset.frames) {
     EXPECT_TRUE(std::filesystem::exists(path.parent_path() / frame.image)) << frame.image;
     EXPECT_TRUE(frame.sharpness.has_value());
+  }
+}
+
+/// A session of one frame per image; the mesh is only copied.
+TEST(Dataset, import_makes_a_session_in_the_order_of_names) {
+  const TemporaryFolder folder;
+  Dataset dataset = walk_round({kWide});
+  std::reverse(dataset.frames.begin(), dataset.frames.end());
+  std::filesystem::create_directories(folder.path() / "images");
+  for (const DatasetFrame& frame : dataset.frames) {
+    write_file(folder.path() / frame.image, frame.image);
+  }
+  write_file(folder.path() / "mesh.ply", "mesh");
+  write_transforms(folder.path() / "transforms.json", dataset);
+  SessionImport import{.dataset = read_dataset(folder.path()),
+                       .images = folder.path(),
+                       .mesh = folder.path() / "mesh.ply",
+                       .metres_per_unit = 0.5};
+  write_imported_session(import, folder.path() / "session");
+  const Session session = open_session(folder.path() / "session");
+  EXPECT_EQ(tests::read_file(session.folder / "images/000003.png"), "images/a view 3.png");
+  const Trajectory trajectory = read_trajectory(*session.poses);
+  ASSERT_EQ(trajectory.entries().size(), 7U);
+  const auto& pose = trajectory.entries()[3].board_from_camera;
+  // 3 of walk_round, which stands at index 3 of the reversed list too.
+  const auto& written = dataset.frames[3].world_from_camera;
+  EXPECT_LT((pose.translation() - 0.5 * written.translation()).norm(), 1e-6);
+  EXPECT_LT((pose.linear() - written.linear()).norm(), 1e-6);
+  EXPECT_LT((session.camera.intrinsics().principal_px - kWide.intrinsics().principal_px).norm(),
+            1e-6);
+  expect_bad_input([&] { write_imported_session(import, folder.path() / "session"); }, "exists");
+  std::filesystem::remove(folder.path() / dataset.frames[2].image);
+  expect_bad_input([&] { write_imported_session(import, folder.path() / "other"); }, "view 4.png");
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "other"));
+  import.dataset = walk_round({kWide, kRound});
+  expect_bad_input([&] { write_imported_session(import, folder.path() / "other"); }, "2 cameras");
+}
+
+/// A real session -> COLMAP -> session: poses and camera to the digits of poses.txt.
+TEST(Dataset, real_session_comes_back_from_colmap) {
+  const auto temple = std::filesystem::path(SHEEN_SHARED_DATA) / "temple";
+  if (!std::filesystem::exists(temple)) GTEST_SKIP() << "no " << temple;
+  const TemporaryFolder folder;
+  const Session session = open_session(temple);
+  Dataset dataset{.cameras = {session.camera}, .frames = {}, .points = {}};
+  const auto entries = read_trajectory(*session.poses).entries();
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const std::string number = std::to_string(i);
+    dataset.frames.push_back({.image = std::string(4 - number.size(), '0') + number + ".png",
+                              .world_from_camera = entries[i].board_from_camera});
+  }
+  for (const ColmapForm form : {ColmapForm::text, ColmapForm::binary}) {
+    write_colmap_model(folder.path(), dataset, form);
+    const auto target = folder.path() / (form == ColmapForm::text ? "text" : "binary");
+    write_imported_session(
+        {.dataset = read_dataset(folder.path()), .images = temple / "images", .mesh = session.mesh},
+        target);
+    const Session read = open_session(target);
+    EXPECT_EQ(read.camera.intrinsics().distortion, session.camera.intrinsics().distortion);
+    EXPECT_LT(
+        (read.camera.intrinsics().principal_px - session.camera.intrinsics().principal_px).norm(),
+        1e-9);
+    const auto back = read_trajectory(*read.poses).entries();
+    ASSERT_EQ(back.size(), entries.size());
+    for (std::size_t i = 0; i < back.size(); ++i) {
+      EXPECT_LT((back[i].board_from_camera.matrix() - entries[i].board_from_camera.matrix())
+                    .cwiseAbs()
+                    .maxCoeff(),
+                1e-6);
+    }
   }
 }
 
