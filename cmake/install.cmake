@@ -1,5 +1,6 @@
 # find_package(sheen) for programs outside: targets sheen::core, sheen::capture, sheen::fitting,
 # sheen::render, sheen::pipeline; headers as <sheen/pipeline/reconstruct.h>.
+# They are the component "development"; the program with its documents is "program".
 include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/sheen)
 

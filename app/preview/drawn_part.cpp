@@ -32,6 +32,7 @@ void add_part(ImDrawList& list, GLuint texture, const ImVec2& corner, const ImVe
   const auto place = [&](const Eigen::Vector2f& share) {
     return ImVec2(corner.x + share.x() * size.x, corner.y + share.y() * size.y);
   };
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): how ImGui names a texture of OpenGL.
   const auto id = reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture));
   list.AddImage(id, place(part.min()), place(part.max()), {part.min().x(), part.min().y()},
                 {part.max().x(), part.max().y()}, ImGui::GetColorU32({1, 1, 1, strength}));

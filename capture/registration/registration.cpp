@@ -223,7 +223,7 @@ class Aligner {
     }
   }
 
-  [[nodiscard]] Matrix6d sum_of_H() const {
+  [[nodiscard]] Matrix6d weighted_hessian() const {
     Matrix6d H = Matrix6d::Zero();
     for (std::size_t v = 0; v < views_.size(); ++v) H += trust_[v] * systems_[v].H;
     return H;
@@ -245,7 +245,7 @@ class Aligner {
     const Eigen::AngleAxisd turned(board_from_object.linear() * guess_.linear().transpose());
     Vector6d moved;
     moved << radius_m_ * turned.angle() * turned.axis(), centre(board_from_object) - centre(guess_);
-    Matrix6d H = sum_of_H();
+    Matrix6d H = weighted_hessian();
     H.diagonal().array() += prior;
     return H.ldlt().solve(g - prior * moved);
   }
@@ -271,7 +271,7 @@ class Aligner {
     }
     const double views = std::max(1, result.views);
     if (result.views > 1) scatter *= views / (views - 1);
-    Matrix6d H = sum_of_H();
+    Matrix6d H = weighted_hessian();
     H.diagonal().array() += prior_information(spread_px_);
     const Matrix6d inverse = H.ldlt().solve(Matrix6d::Identity());
     const Matrix6d covariance = inverse * scatter * inverse;

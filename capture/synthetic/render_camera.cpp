@@ -102,7 +102,7 @@ cv::Mat develop(const cv::Mat& light, const SensorNoise& noise, std::uint32_t se
   cv::Mat image(light.size(), CV_8UC3);
   for (int y = 0; y < light.rows; ++y) {
     for (int x = 0; x < light.cols; ++x) {
-      const cv::Vec3f linear = light.at<cv::Vec3f>(y, x);
+      const cv::Vec3f& linear = light.at<cv::Vec3f>(y, x);
       const std::uint32_t place =
           hash(seed, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));
       const Eigen::Vector2f first = normal_pair(hash(place, 3U));

@@ -211,7 +211,7 @@ std::unique_ptr<const LightField> decode_light_field(const json& extension, cons
   throw ModelFault("its representation \"" + name.substr(0, 40) + "\" is unknown");
 }
 
-Model parse_model(std::string file) {
+Model parse_model(const std::string& file) {
   const Glb glb = parse_glb(file);
   // Not copied: a copy recurses as deep as a hostile file nests.
   const auto found = glb.document.find("extensions");

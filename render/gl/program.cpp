@@ -9,6 +9,7 @@ namespace sheen::render::gl {
 namespace {
 
 std::string first_line(const std::string& log) {
+  // NOLINTNEXTLINE(readability-redundant-string-cstr)
   const std::string text(log.c_str());  // the driver counts the closing zero
   return text.empty() ? "refused without a log" : text.substr(0, text.find('\n'));
 }

@@ -68,7 +68,9 @@ void VirtualDisplay::act(const std::vector<std::string>& arguments) const {
 
 /// The address sanitizer's: leaks are looked for when the window system's driver has been unloaded
 /// and its own can no longer be told from ours.
-extern "C" const char* __asan_default_options();   // NOLINT(bugprone-reserved-identifier)
-extern "C" const char* __asan_default_options() {  // NOLINT(bugprone-reserved-identifier)
+// NOLINTBEGIN(bugprone-reserved-identifier,readability-identifier-naming)
+extern "C" const char* __asan_default_options();
+extern "C" const char* __asan_default_options() {
   return "detect_leaks=0";
 }
+// NOLINTEND(bugprone-reserved-identifier,readability-identifier-naming)

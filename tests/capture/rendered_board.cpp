@@ -34,27 +34,41 @@ cv::Mat draw_code(const Board& board, int id) {
   return code;
 }
 
+/// Row and column of a tag's code as affine functions of a point of the board (metres): plain
+/// numbers, since every sample of every image asks every tag.
 struct PrintedTag {
-  Eigen::Isometry3d tag_from_board;
-  double size_m;
-  int modules;  // across the square, which is the middle of the code
+  double column[4];  ///< factors of x, y, z; constant
+  double row[4];
   cv::Mat code;
 };
+
+double affine(const double (&f)[4], const Eigen::Vector3d& point) {
+  const double* p = point.data();
+  return f[0] * p[0] + f[1] * p[1] + f[2] * p[2] + f[3];
+}
 
 class Print {
  public:
   explicit Print(const Board& board) {
     const int modules = find_tag_family(board.family, board.border_bits).value().modules;
     for (const auto& [id, tag] : board.tags) {
-      tags_.push_back({tag.board_from_tag.inverse(), tag.size_m, modules, draw_code(board, id)});
+      PrintedTag printed{{}, {}, draw_code(board, id)};  // the square is the middle of the code
+      const Eigen::Matrix4d tag_from_board = tag.board_from_tag.inverse().matrix();
+      const double modules_per_m = modules / tag.size_m;
+      for (int k = 0; k < 4; ++k) {
+        printed.column[k] = modules_per_m * tag_from_board(0, k);
+        printed.row[k] = -modules_per_m * tag_from_board(1, k);
+      }
+      printed.column[3] += printed.code.cols / 2.0;
+      printed.row[3] += printed.code.rows / 2.0;
+      tags_.push_back(std::move(printed));
     }
   }
 
   [[nodiscard]] bool is_black(const Eigen::Vector3d& board) const {
     for (const PrintedTag& tag : tags_) {
-      const Eigen::Vector3d p = tag.tag_from_board * board;
-      const double column = p.x() / tag.size_m * tag.modules + tag.code.cols / 2.0;
-      const double row = tag.code.rows / 2.0 - p.y() / tag.size_m * tag.modules;
+      const double column = affine(tag.column, board);
+      const double row = affine(tag.row, board);
       if (column < 0 || row < 0 || column >= tag.code.cols || row >= tag.code.rows) continue;
       return tag.code.at<unsigned char>(static_cast<int>(row), static_cast<int>(column)) == 0;
     }

@@ -165,7 +165,7 @@ fitting::iwls::LightFieldModel random_iwls(fitting::iwls::Layout layout, int cen
        i += static_cast<std::size_t>(unseen_every)) {
     observed[i] = 0;
   }
-  return {{layout, made.centers, terms, h}, std::move(coefficients), std::move(observed)};
+  return {{layout, made.centers, terms, h}, coefficients, std::move(observed)};
 }
 
 fitting::mean::MeanLightField random_mean(std::size_t patch_count, int unseen_every) {
