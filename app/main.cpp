@@ -5,6 +5,7 @@
 #include "app/commands/compare.h"
 #include "app/commands/evaluate.h"
 #include "app/commands/export_command.h"
+#include "app/commands/import.h"
 #include "app/commands/info.h"
 #include "app/commands/register.h"
 #include "app/commands/render.h"
@@ -46,6 +47,7 @@ int main(int argc, char** argv) {
   app::add_calibrate_command(program, context);
   app::add_survey_command(program, context);
   app::add_register_command(program, context);
+  app::add_import_command(program, context);
   app::add_replay_command(program, context);
   app::add_render_command(program, context);
   app::add_evaluate_command(program, context);

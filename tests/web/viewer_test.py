@@ -19,7 +19,7 @@ import zlib
 SKIPPED = 77
 chromium = shutil.which("chromium")
 if not chromium:
-    print("skipped: Chromium is not installed (scripts/packages.txt)")
+    print("skipped: Chromium is not installed (scripts/packages-test.txt)")
     sys.exit(SKIPPED)
 try:
     import numpy as np

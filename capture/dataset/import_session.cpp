@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "capture/dataset/import_session.h"
+
+#include "capture/calibration/camera_file.h"
+#include "capture/dataset/colmap_files.h"
+#include "capture/dataset/transforms_file.h"
+#include "capture/pose/trajectory.h"
+#include "capture/session/session_file.h"
+#include "core/diagnostics/error.h"
+#include "core/files/staged_output.h"
+#include "core/text/lower_case.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <system_error>
+
+namespace sheen::capture {
+namespace {
+
+namespace fs = std::filesystem;
+
+void copy_into_session(const fs::path& from, const fs::path& to) {
+  std::error_code fault;
+  if (fs::copy_file(from, to, fault)) return;
+  throw core::bad_input(from, "cannot be copied: " + fault.message(),
+                        "check that it exists and that the disk has room");
+}
+
+/// The ending that all images share: the session's pattern has one.
+std::string common_ending(const Dataset& dataset, const fs::path& folder) {
+  const std::string first = fs::path(dataset.frames.front().image).extension().string();
+  for (const DatasetFrame& frame : dataset.frames) {
+    const bool same =
+        core::lower_case(fs::path(frame.image).extension().string()) == core::lower_case(first);
+    if (!same || first.find('%') != std::string::npos) {
+      throw core::bad_input(folder / frame.image, "has another ending than the other images",
+                            "convert all images to one format");
+    }
+  }
+  return core::lower_case(first);
+}
+
+}  // namespace
+
+Dataset read_dataset(const fs::path& path) {
+  if (!fs::is_directory(path)) return read_transforms(path);
+  if (fs::exists(path / "transforms.json")) return read_transforms(path / "transforms.json");
+  for (const char* place : {"", "sparse/0", "sparse", "colmap/sparse/0"}) {
+    for (const char* name : {"cameras.bin", "cameras.txt"}) {
+      if (fs::exists(path / place / name)) return read_colmap_model(path / place);
+    }
+  }
+  throw core::bad_input(path, "holds neither a transforms.json nor a COLMAP model",
+                        "name the folder that holds cameras.txt or cameras.bin");
+}
+
+void write_imported_session(const SessionImport& import, const fs::path& folder) {
+  Dataset dataset = import.dataset;
+  if (dataset.cameras.size() != 1) {
+    throw core::bad_input(import.images,
+                          fmt::format("was taken by {} cameras", dataset.cameras.size()),
+                          "a session has one: let the program that posed the images share them");
+  }
+  if (fs::exists(folder)) {
+    throw core::bad_input(folder, "exists already", "choose another name for the session");
+  }
+  std::sort(dataset.frames.begin(), dataset.frames.end(),
+            [](const auto& a, const auto& b) { return a.image < b.image; });
+  const std::string ending = common_ending(dataset, import.images);
+  const std::string mesh = "object" + core::lower_case(import.mesh.extension().string());
+
+  core::StagedOutput staged(folder);
+  fs::create_directories(staged.path() / "images");
+  std::vector<Trajectory::Entry> poses;
+  for (std::size_t i = 0; i < dataset.frames.size(); ++i) {
+    const DatasetFrame& frame = dataset.frames[i];
+    copy_into_session(import.images / frame.image,
+                      staged.path() / "images" / fmt::format("{:06d}{}", i, ending));
+    Eigen::Isometry3d pose = frame.world_from_camera;
+    pose.translation() *= import.metres_per_unit;
+    poses.push_back({static_cast<double>(i), pose});
+  }
+  copy_into_session(import.mesh, staged.path() / mesh);
+  write_camera(staged.path() / "camera.yaml", dataset.cameras.front());
+  write_trajectory(staged.path() / "poses.txt", poses);
+  write_session_file(staged.path(),
+                     {.images = "images/%06d" + ending, .poses = "poses.txt", .mesh = mesh});
+  staged.commit();
+}
+
+}  // namespace sheen::capture
