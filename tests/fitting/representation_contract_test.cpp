@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+// What every representation keeps to. The tests walk the registry, so that a new one is checked
+// without being named here.
+#include "core/diagnostics/error.h"
+#include "fitting/descriptor.h"
+#include "fitting/model_file/model_file.h"
+#include "fitting/model_file/model_part.h"
+#include "fitting/undo/undoable_fitter.h"
+#include "render/context/context.h"
+#include "render/renderer.h"
+#include "tests/fitting/photographs_for_tests.h"
+#include "tests/support/temporary_folder.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace sheen::fitting {
+namespace {
+
+using testing::Photographs;
+
+const std::vector<int> kAllViews{0, 1, 2, 3, 4, 5, 6, 7};
+
+/// A colour of place and direction, within what images hold.
+Eigen::Vector3f glossy(const Eigen::Vector3f& point, const Eigen::Vector3f& towards_viewer) {
+  return {0.5f + 4.0f * point.x(), 0.5f + 0.3f * towards_viewer.y(),
+          0.5f + 2.0f * point.z() + 0.1f * towards_viewer.x()};
+}
+
+Photographs photographs_of(const testing::Look& look) {
+  return {render::testing::sphere(0.1f, 8), static_cast<int>(kAllViews.size()), look};
+}
+
+std::string bytes_of(const core::Mesh& mesh, const LightField& light_field) {
+  const tests::TemporaryFolder folder;
+  write_model(folder / "model.glb", mesh, light_field);
+  return tests::read_file(folder / "model.glb");
+}
+
+std::unique_ptr<Fitter> fitted(const Descriptor& one, const Photographs& photographs,
+                               const std::vector<int>& views, int threads = 1) {
+  auto fitter = make_fitter(one.name, photographs.mesh(), {}, threads);
+  photographs.show(views, *fitter);
+  fitter->finish();
+  return fitter;
+}
+
+/// One test for each representation, named after it.
+class Representation : public ::testing::TestWithParam<const Descriptor*> {};
+
+// Images of one colour, background included. Models keep half floats (steps of 2^-11 below 1, an
+// eighth of a grey level), so what is drawn is at most one level beside it.
+TEST_P(Representation, ConstantColourStaysThatColour) {
+  const auto photographs = photographs_of(glossy);
+  const cv::Mat image(photographs.views()[0].image.size(), CV_8UC3, cv::Scalar(204, 102, 51));
+  pipeline::ViewObserver observer(photographs.mesh(),
+                                  core::make_raster_visibility(photographs.mesh(), 1), {}, 1);
+  const auto fitter = make_fitter(GetParam()->name, photographs.mesh());
+  for (const int i : kAllViews) {
+    const auto& pose = photographs.views()[static_cast<std::size_t>(i)].camera_from_object;
+    fitter->integrate(observer.observe(i, image, photographs.camera(), pose));
+  }
+  fitter->finish();
+  const auto context = render::make_osmesa_context();
+  const auto renderer = render::make_renderer(*context, photographs.mesh(), fitter->light_field());
+  const auto from_elsewhere = render::testing::looking_at_origin({0.3, -0.8, 0.4}, 0.36);
+  const auto view = renderer->render(photographs.camera(), from_elsewhere);
+  const cv::Mat expected(view.image.size(), CV_8UC3, cv::Scalar(204, 102, 51));
+  const auto difference = render::testing::difference(view.image, expected, view.mask);
+  EXPECT_GT(difference.pixels, 500u);
+  EXPECT_LE(difference.largest, 1);
+}
+
+TEST_P(Representation, FitsToTheSameBytesOnAnyNumberOfThreads) {
+  const auto photographs = photographs_of(glossy);
+  const auto bytes = [&](int threads) {
+    return bytes_of(photographs.mesh(),
+                    fitted(*GetParam(), photographs, kAllViews, threads)->light_field());
+  };
+  const std::string once = bytes(1);
+  EXPECT_TRUE(bytes(1) == once);
+  EXPECT_TRUE(bytes(3) == once);
+}
+
+TEST_P(Representation, IsReadBackAsItWasWritten) {
+  const auto photographs = photographs_of(glossy);
+  const auto fitter = fitted(*GetParam(), photographs, kAllViews);
+  const tests::TemporaryFolder folder;
+  write_model(folder / "a.glb", photographs.mesh(), fitter->light_field());
+  const Model read = read_model(folder / "a.glb");
+  EXPECT_EQ(read.light_field->representation(), GetParam()->name);
+  EXPECT_EQ(byte_size(*read.light_field), byte_size(fitter->light_field()));
+  EXPECT_TRUE(bytes_of(read.mesh, *read.light_field) == tests::read_file(folder / "a.glb"));
+}
+
+TEST_P(Representation, ShortenedFilesAreRefused) {
+  const auto photographs = photographs_of(glossy);
+  const std::string good =
+      bytes_of(photographs.mesh(), fitted(*GetParam(), photographs, kAllViews)->light_field());
+  const tests::TemporaryFolder folder;
+  constexpr std::size_t lengths = 40;
+  for (std::size_t i = 0; i < lengths; ++i) {
+    tests::write_file(folder / "bad.glb", good.substr(0, i * good.size() / lengths));
+    EXPECT_THROW(read_model(folder / "bad.glb"), core::Error) << i;
+  }
+}
+
+// An array that is one byte shorter than what belongs to it.
+TEST_P(Representation, PartsWithShortArraysAreRefused) {
+  const auto photographs = photographs_of(glossy);
+  const auto fitter = fitted(*GetParam(), photographs, kAllViews);
+  const ModelPart good = GetParam()->encode(fitter->light_field());
+  EXPECT_NO_THROW(GetParam()->decode(good, photographs.mesh()));
+  for (const auto& [name, array] : good.arrays) {
+    ModelPart part = good;
+    part.arrays[name] = array.first(array.size() - 1);
+    EXPECT_THROW(GetParam()->decode(part, photographs.mesh()), ModelFault) << name;
+    part.arrays.erase(name);
+    EXPECT_THROW(GetParam()->decode(part, photographs.mesh()), ModelFault) << name;
+  }
+}
+
+TEST_P(Representation, FewViewsAndNoneGiveNumbers) {
+  const auto photographs = photographs_of(glossy);
+  for (const std::vector<int>& views : {std::vector<int>{}, std::vector<int>{0}}) {
+    const auto fitter = fitted(*GetParam(), photographs, views);
+    const auto colours = fitter->light_field().vertex_colours(photographs.mesh());
+    EXPECT_EQ(colours.size(), photographs.mesh().positions.size());
+    EXPECT_TRUE(std::ranges::all_of(colours, [](const auto& rgb) { return rgb.allFinite(); }));
+  }
+}
+
+TEST_P(Representation, UndoEqualsAFitThatNeverSawTheViews) {
+  const auto photographs = photographs_of(glossy);
+  UndoableFitter undoable([&] { return make_fitter(GetParam()->name, photographs.mesh()); },
+                          [&](std::span<const int> frames, const auto& observe) {
+                            photographs.observe({frames.begin(), frames.end()}, observe);
+                          });
+  photographs.show(kAllViews, undoable);
+  undoable.undo(3, [](const core::SampleBatch&, const LightField&) {});
+  undoable.finish();
+  const auto never_saw = fitted(*GetParam(), photographs, {0, 1, 2, 3, 4});
+  EXPECT_TRUE(bytes_of(photographs.mesh(), undoable.light_field()) ==
+              bytes_of(photographs.mesh(), never_saw->light_field()));
+}
+
+INSTANTIATE_TEST_SUITE_P(Registry, Representation, ::testing::ValuesIn(representations()),
+                         [](const auto& parameter) {
+                           std::string name(parameter.param->name);
+                           std::ranges::replace(name, '-', '_');
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace sheen::fitting
