@@ -15,9 +15,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 /// Frames without images, taken at these times.
-class Stamps final : public FrameSource {
+class StampedFrames final : public FrameSource {
  public:
-  explicit Stamps(std::vector<double> times_s) : times_s_(std::move(times_s)) {}
+  explicit StampedFrames(std::vector<double> times_s) : times_s_(std::move(times_s)) {}
   std::optional<Frame> next() override {
     if (next_ == times_s_.size()) return std::nullopt;
     Frame frame;
@@ -35,7 +35,8 @@ class Stamps final : public FrameSource {
 };
 
 TEST(PacedSource, GivesEveryFrameInOrder) {
-  const auto source = at_recorded_pace(std::make_unique<Stamps>(std::vector{0.0, 0.01, 0.02}));
+  const auto source =
+      at_recorded_pace(std::make_unique<StampedFrames>(std::vector{0.0, 0.01, 0.02}));
   EXPECT_EQ(source->frame_count(), 3);
   for (int i = 0; i < 3; ++i) {
     const auto frame = source->next();
@@ -48,7 +49,8 @@ TEST(PacedSource, GivesEveryFrameInOrder) {
 
 TEST(PacedSource, IsNeverSoonerThanTheRecording) {
   // A recording that begins in its seventh second, as a part of a longer one does.
-  const auto source = at_recorded_pace(std::make_unique<Stamps>(std::vector{7.0, 7.03, 7.06}));
+  const auto source =
+      at_recorded_pace(std::make_unique<StampedFrames>(std::vector{7.0, 7.03, 7.06}));
   const auto before_first = Clock::now();
   for (int i = 0; i < 3; ++i) source->next();
   EXPECT_GE(Clock::now() - before_first, std::chrono::milliseconds(60));
@@ -56,7 +58,8 @@ TEST(PacedSource, IsNeverSoonerThanTheRecording) {
 
 TEST(PacedSource, CutsGapsShort) {
   // An hour without an image: were it kept, this test would not end.
-  const auto source = at_recorded_pace(std::make_unique<Stamps>(std::vector{0.0, 3600.0, 3600.01}));
+  const auto source =
+      at_recorded_pace(std::make_unique<StampedFrames>(std::vector{0.0, 3600.0, 3600.01}));
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(source->next());
 }
 
