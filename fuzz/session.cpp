@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "capture/session/session.h"
+
 #include "fuzz/reader.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
