@@ -30,7 +30,7 @@ struct Model {
   std::optional<pipeline::FrameStatistics> frames{};  ///< of a reconstruction
 };
 
-Model model_of(std::shared_ptr<const fitting::Model> file) {
+Model model_of(const std::shared_ptr<const fitting::Model>& file) {
   return {file, &file->mesh, file->light_field.get(), file->seen};
 }
 
