@@ -99,6 +99,18 @@ void judge_poses(const std::filesystem::path& folder, const StressRecording& dam
   }
 }
 
+/// Notes without the session's folder, whose name differs from session to session.
+std::vector<std::string> without_folder(std::vector<std::string> notes,
+                                        const std::filesystem::path& folder) {
+  const std::string name = folder.string() + "/";
+  for (std::string& note : notes) {
+    for (auto at = note.find(name); at != std::string::npos; at = note.find(name, at)) {
+      note.erase(at, name.size());
+    }
+  }
+  return notes;
+}
+
 void judge_models(const std::filesystem::path& folder, int threads, render::Context& gl,
                   StressRow& row) {
   Notes sink;
@@ -115,13 +127,12 @@ void judge_models(const std::filesystem::path& folder, int threads, render::Cont
               .error.psnr_db;
     }
   } catch (const core::Error& error) {
-    row.refusal = error.what();
+    row.refusal = without_folder({error.what()}, folder).front();
     row.psnr_db.clear();
   }
-  row.notes = sink.lines;
+  row.notes = without_folder(sink.lines, folder);
 }
 
-/// Notes name the session's folder, which differs from run to run.
 void drop_known_notes(const std::vector<std::string>& known, StressRow& row) {
   std::erase_if(row.notes, [&](const std::string& note) {
     return std::ranges::find(known, note) != known.end();
@@ -185,6 +196,9 @@ std::vector<StressRow> run_stress(const StressOptions& options,
       judge_models(scratch.path(), options.threads, *gl, row);
       if (rows.empty()) known_notes = row.notes;
       drop_known_notes(known_notes, row);
+      progress(fmt::format("  {} of {} frames posed, {} dB, said: {}", row.posed, row.frames,
+                           row.psnr_db.empty() ? "-" : decimals(row.psnr_db.front(), 2),
+                           what_was_said(row)));
       rows.push_back(std::move(row));
     }
   }
