@@ -10,14 +10,15 @@
 
 namespace sheen::bench {
 
-int run_program(
-    int argc, char** argv, const std::string& description,
-    const std::function<void(const ProgramOptions&, const evaluation::Progress&)>& body) {
+int run_program(int argc, char** argv, const std::string& description,
+                const std::function<void(const ProgramOptions&, const evaluation::Progress&)>& body,
+                const std::function<void(CLI::App&)>& add_options) {
   ProgramOptions options;
   CLI::App app(description);
   app.add_option("-o,--output", options.output, "Folder for CSV files")->capture_default_str();
   app.add_flag("--quick", options.quick, "Fewer points and settings: a check, not a measurement");
   app.add_option("--seed", options.seed, "Seed of points, views and noise")->capture_default_str();
+  if (add_options) add_options(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -8,6 +8,10 @@
 #include <functional>
 #include <string>
 
+namespace CLI {
+class App;
+}
+
 namespace sheen::bench {
 
 /// What every program of the bench understands.
@@ -18,9 +22,10 @@ struct ProgramOptions {
 };
 
 /// Parses the arguments, calls `body` and turns exceptions into exit codes: 0 done, 1 failed while
-/// running, 2 bad arguments. Progress goes to stderr.
-int run_program(
-    int argc, char** argv, const std::string& description,
-    const std::function<void(const ProgramOptions&, const evaluation::Progress&)>& body);
+/// running, 2 bad arguments. Progress goes to stderr. `add_options` declares what else a program
+/// understands.
+int run_program(int argc, char** argv, const std::string& description,
+                const std::function<void(const ProgramOptions&, const evaluation::Progress&)>& body,
+                const std::function<void(CLI::App&)>& add_options = {});
 
 }  // namespace sheen::bench
