@@ -111,7 +111,7 @@ void take_light(StressRecording& recording, double stops) {
 
 /// Gains drift as one slow wave over the recording, from -amplitude to amplitude, in stops; each
 /// channel by its own share.
-Damage drift_of(cv::Vec3d shares) {
+Damage drift_of(const cv::Vec3d& shares) {
   return [shares](StressRecording& recording, double stops) {
     const auto frames = static_cast<double>(recording.light.size());
     for (std::size_t i = 0; i < recording.light.size(); ++i) {
