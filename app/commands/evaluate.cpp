@@ -151,12 +151,7 @@ void add_evaluate_command(CommandLine& program, CommandContext& context) {
       .option("--contact-sheet", options->sheet,
               "Image of photographs, renderings and differences side by side")
       .type("FILE.png");
-  command
-      .option("--hold-out", options->frames.hold_out,
-              "Only the frames that replay --hold-out N kept out; 0: all")
-      .not_negative()
-      .show_default();
-  add_frame_options(command, options->frames);
+  add_evaluated_frame_options(command, options->frames);
   add_common_options(command, context);
   command.action([options, &context] { run_evaluate(*options, context); });
 }

@@ -3,14 +3,12 @@
 
 #include "app/commands/export_cost.h"
 #include "app/commands/frame_options.h"
+#include "app/commands/table_options.h"
 #include "exporters/format.h"
 #include "fitting/model_file/model_file.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
-#include <algorithm>
-#include <map>
 
 namespace sheen::app {
 namespace {
@@ -23,38 +21,13 @@ struct ExportOptions {
   pipeline::FrameChoice frames;
 };
 
-/// Settings of all formats by name: the format that each belongs to, for the help.
-struct FormatOption {
-  fitting::FitOption option;
-  std::vector<std::string> owners;  ///< endings
-};
-
-std::vector<FormatOption> format_options() {
-  std::vector<FormatOption> known;
+/// The settings of all formats, which the help names by their endings.
+std::vector<OwnedOption> format_options() {
+  std::vector<OwnedOption> known;
   for (const exporters::Format* format : exporters::formats()) {
-    const auto options = format->default_options();
-    for (fitting::FitOption& option : options->table()) {
-      auto same = std::ranges::find_if(
-          known, [&](const FormatOption& k) { return k.option.name == option.name; });
-      if (same == known.end()) {
-        // The help needs the default's text, not the options it stands in.
-        const std::string default_text = option.get();
-        option.get = [default_text] { return default_text; };
-        option.set = {};
-        same = known.insert(known.end(), {std::move(option), {}});
-      }
-      same->owners.emplace_back(format->endings.front());
-    }
+    add_owner(format->endings.front(), *format->default_options(), known);
   }
   return known;
-}
-
-std::string help_of(const FormatOption& known) {
-  std::string text = fmt::format("With {}: {}", fmt::join(known.owners, ", "), known.option.help);
-  if (const std::string shown = known.option.get(); !shown.empty() && !known.option.is_flag()) {
-    text += " (default " + shown + ")";
-  }
-  return text;
 }
 
 void run_export(const ExportOptions& options, const CommandContext& context) {
@@ -105,22 +78,10 @@ void add_export_command(CommandLine& program, CommandContext& context) {
       .option("--views", options->session,
               "Also measure what the conversion costs on the views of this session")
       .type("SESSION");
-  command
-      .option("--hold-out", options->frames.hold_out,
-              "Only the frames that replay --hold-out N kept out; 0: all")
-      .not_negative()
-      .show_default();
-  add_frame_options(command, options->frames);
-  for (const FormatOption& known : format_options()) {
-    const std::string name = known.option.name;
-    const auto take = [options, name](const std::string& text) { options->given[name] = text; };
-    if (known.option.is_flag()) {
-      command.switch_on(
-          "--" + name, [take] { take("true"); }, help_of(known));
-    } else {
-      command.option("--" + name, take, help_of(known)).type(known.option.type);
-    }
-  }
+  add_evaluated_frame_options(command, options->frames);
+  add_table_options(
+      command, format_options(),
+      [options](const std::string& name, const std::string& text) { options->given[name] = text; });
   add_common_options(command, context);
   command.action([options, &context] { run_export(*options, context); });
 }

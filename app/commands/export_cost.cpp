@@ -5,8 +5,6 @@
 #include "core/mesh/bounds.h"
 #include "evaluation/views/evaluate_views.h"
 #include "pipeline/pose_frames.h"
-#include "pipeline/posed_views.h"
-#include "pipeline/session_mesh.h"
 #include "render/renderer.h"
 
 #include <Eigen/Geometry>

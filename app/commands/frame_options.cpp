@@ -25,4 +25,13 @@ void add_frame_options(Command command, pipeline::FrameChoice& choice) {
       .show_default();
 }
 
+void add_evaluated_frame_options(Command command, pipeline::FrameChoice& choice) {
+  command
+      .option("--hold-out", choice.hold_out,
+              "Only the frames that replay --hold-out N kept out; 0: all")
+      .not_negative()
+      .show_default();
+  add_frame_options(command, choice);
+}
+
 }  // namespace sheen::app

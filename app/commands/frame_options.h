@@ -10,4 +10,7 @@ namespace sheen::app {
 /// command.
 void add_frame_options(Command command, pipeline::FrameChoice& choice);
 
+/// The same, and --hold-out: for commands that compare a model with what it was not fitted to.
+void add_evaluated_frame_options(Command command, pipeline::FrameChoice& choice);
+
 }  // namespace sheen::app

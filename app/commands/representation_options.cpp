@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/representation_options.h"
 
+#include "app/commands/table_options.h"
 #include "fitting/descriptor.h"
 
 #include <fmt/format.h>
@@ -14,35 +15,17 @@
 namespace sheen::app {
 namespace {
 
-/// An option and the representations that have it, in the order of the registry.
-struct KnownOption {
-  fitting::FitOption option;
-  std::vector<std::string> owners;
-};
-
-std::vector<KnownOption> known_options() {
-  std::vector<KnownOption> known;
+/// The settings of all representations, in the order of the registry.
+std::vector<OwnedOption> known_options() {
+  std::vector<OwnedOption> known;
   for (const fitting::Descriptor* descriptor : fitting::representations()) {
-    const auto options = descriptor->default_options();
-    for (fitting::FitOption& option : options->table()) {
-      const auto same = std::ranges::find_if(
-          known, [&](const KnownOption& k) { return k.option.name == option.name; });
-      if (same != known.end()) {
-        same->owners.emplace_back(descriptor->name);
-        continue;
-      }
-      // The help needs the default's text, not the options it stands in.
-      const std::string default_text = option.get();
-      option.get = [default_text] { return default_text; };
-      option.set = {};
-      known.push_back({std::move(option), {std::string(descriptor->name)}});
-    }
+    add_owner(descriptor->name, *descriptor->default_options(), known);
   }
   return known;
 }
 
-const KnownOption& known_option(const std::vector<KnownOption>& known, const std::string& name) {
-  return *std::ranges::find_if(known, [&](const KnownOption& k) { return k.option.name == name; });
+const OwnedOption& known_option(const std::vector<OwnedOption>& known, const std::string& name) {
+  return *std::ranges::find_if(known, [&](const OwnedOption& k) { return k.option.name == name; });
 }
 
 /// --fitter once named the sparse representation, too.
@@ -58,7 +41,7 @@ void take_fitter_as_representation(std::string& representation, fitting::OptionV
 
 /// The first representation that has all the options; throws where none has.
 std::string implied_representation(const fitting::OptionValues& given,
-                                   const std::vector<KnownOption>& known) {
+                                   const std::vector<OwnedOption>& known) {
   for (const fitting::Descriptor* descriptor : fitting::representations()) {
     const bool has_all = std::ranges::all_of(given, [&](const auto& option) {
       const auto& owners = known_option(known, option.first).owners;
@@ -75,7 +58,7 @@ std::string implied_representation(const fitting::OptionValues& given,
 }
 
 void refuse_foreign_options(const std::string& representation, const fitting::OptionValues& given,
-                            const std::vector<KnownOption>& known) {
+                            const std::vector<OwnedOption>& known) {
   for (const auto& [name, text] : given) {
     const auto& owners = known_option(known, name).owners;
     if (std::ranges::find(owners, representation) != owners.end()) continue;
@@ -84,19 +67,11 @@ void refuse_foreign_options(const std::string& representation, const fitting::Op
   }
 }
 
-std::string help_of(const KnownOption& known) {
-  std::string text = fmt::format("With {}: {}", fmt::join(known.owners, ", "), known.option.help);
-  if (const std::string shown = known.option.get(); !shown.empty() && !known.option.is_flag()) {
-    text += " (default " + shown + ")";
-  }
-  return text;
-}
-
 }  // namespace
 
 RepresentationChoice resolve_representation(std::string representation,
                                             fitting::OptionValues given) {
-  const std::vector<KnownOption> known = known_options();
+  const std::vector<OwnedOption> known = known_options();
   take_fitter_as_representation(representation, given);
   if (representation.empty()) representation = implied_representation(given, known);
   refuse_foreign_options(representation, given, known);
@@ -123,16 +98,9 @@ void add_representation_options(Command command, RepresentationChoice& choice) {
               sentences + " (default " + choice.representation +
                   ", or the one that the options below belong to)")
       .one_of(names);
-  for (const KnownOption& known : known_options()) {
-    const std::string name = known.option.name;
-    const auto take = [given, name](const std::string& text) { given->values[name] = text; };
-    if (known.option.is_flag()) {
-      command.switch_on(
-          "--" + name, [take] { take("true"); }, help_of(known));
-    } else {
-      command.option("--" + name, take, help_of(known)).type(known.option.type);
-    }
-  }
+  add_table_options(
+      command, known_options(),
+      [given](const std::string& name, const std::string& text) { given->values[name] = text; });
   command.after_parsing(
       [given, &choice] { choice = resolve_representation(given->representation, given->values); });
 }

@@ -13,19 +13,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <system_error>
 
 namespace sheen::capture {
 namespace {
 
 namespace fs = std::filesystem;
-
-void copy_into_session(const fs::path& from, const fs::path& to) {
-  std::error_code fault;
-  if (fs::copy_file(from, to, fault)) return;
-  throw core::bad_input(from, "cannot be copied: " + fault.message(),
-                        "check that it exists and that the disk has room");
-}
 
 /// The ending that all images share: the session's pattern has one.
 std::string common_ending(const Dataset& dataset, const fs::path& folder) {

@@ -7,6 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <system_error>
+
 namespace sheen::capture {
 namespace {
 
@@ -29,6 +31,15 @@ void write_json(const std::filesystem::path& path, const ordered_json& document)
 }
 
 }  // namespace
+
+void copy_into_session(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code fault;
+  std::filesystem::copy_file(from, to, fault);
+  if (fault) {
+    throw core::bad_input(from, "cannot be copied into the session: " + fault.message(),
+                          "check the file and the free space");
+  }
+}
 
 void write_session_file(const std::filesystem::path& folder, const SessionFile& session) {
   ordered_json frames;

@@ -27,6 +27,9 @@ struct SessionFile {
   Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();
 };
 
+/// Copies a file that a session is made of. Throws core::Error (bad_input) for `from`.
+void copy_into_session(const std::filesystem::path& from, const std::filesystem::path& to);
+
 /// Writes `folder`/session.json. Throws core::Error (run_failed).
 void write_session_file(const std::filesystem::path& folder, const SessionFile& session);
 

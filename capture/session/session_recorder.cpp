@@ -25,15 +25,6 @@ std::span<const std::uint8_t> bytes_of(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-void copy_part(const fs::path& from, const fs::path& to) {
-  std::error_code fault;
-  fs::copy_file(from, to, fault);
-  if (fault) {
-    throw core::bad_input(from, "cannot be copied into the session: " + fault.message(),
-                          "check the file and the free space");
-  }
-}
-
 /// What a recording holds besides images is on the disk before the first of them.
 void flush_files(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -56,9 +47,9 @@ SessionRecorder::SessionRecorder(const fs::path& folder, const SessionSetup& set
   core::StagedOutput staged(folder);
   fs::create_directories(staged.path());
   write_camera(staged.path() / "camera.yaml", setup.camera);
-  copy_part(setup.board, staged.path() / "board.yaml");
+  copy_into_session(setup.board, staged.path() / "board.yaml");
   const std::string mesh = "object" + setup.mesh.extension().string();
-  copy_part(setup.mesh, staged.path() / mesh);
+  copy_into_session(setup.mesh, staged.path() / mesh);
   write_session_file(staged.path(), {.video = "frames.avi",
                                      .stamps = "frames.csv",
                                      .board = "board.yaml",

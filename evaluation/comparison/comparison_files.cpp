@@ -3,6 +3,7 @@
 
 #include "core/diagnostics/error.h"
 #include "core/files/write_file.h"
+#include "core/text/script_text.h"
 #include "evaluation/comparison/page_text.h"
 #include "evaluation/comparison/run_program.h"
 
@@ -32,17 +33,6 @@ void replace_once(std::string& text, const std::string& mark, std::string_view b
   if (place != std::string::npos) text.replace(place, mark.size(), by);
 }
 
-/// JSON that may stand inside a script element: no tag can begin in it.
-std::string inline_json(const nlohmann::ordered_json& document) {
-  const std::string text =
-      document.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  std::string safe;
-  for (const char character : text) {
-    safe += character == '<' ? "\\u003c" : std::string(1, character);
-  }
-  return safe;
-}
-
 void write_page(const fs::path& staging, const nlohmann::ordered_json& document,
                 std::vector<std::string>& notes) {
   const auto library = read_text(kChartLibrary);
@@ -55,7 +45,9 @@ void write_page(const fs::path& staging, const nlohmann::ordered_json& document,
   replace_once(page, "/*{{style}}*/", page_text("page.css"));
   replace_once(page, "/*{{library}}*/", *library);
   replace_once(page, "/*{{script}}*/", page_text("page.js"));
-  replace_once(page, "{{data}}", inline_json(document));
+  replace_once(page, "{{data}}",
+               core::in_script(document.dump(-1, ' ', false,
+                                             nlohmann::ordered_json::error_handler_t::replace)));
   core::write_file(staging / "compare.html", page);
 }
 

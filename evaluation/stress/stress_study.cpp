@@ -99,14 +99,18 @@ void judge_poses(const std::filesystem::path& folder, const StressRecording& dam
   }
 }
 
+void replace_all(std::string& text, const std::string& part, const std::string& by) {
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + by.size())) {
+    text.replace(at, part.size(), by);
+  }
+}
+
 /// Notes without the session's folder, whose name differs from session to session.
 std::vector<std::string> without_folder(std::vector<std::string> notes,
                                         const std::filesystem::path& folder) {
-  const std::string name = folder.string() + "/";
   for (std::string& note : notes) {
-    for (auto at = note.find(name); at != std::string::npos; at = note.find(name, at)) {
-      note.erase(at, name.size());
-    }
+    replace_all(note, folder.string() + "/", "");
+    replace_all(note, folder.string(), "session");
   }
   return notes;
 }

@@ -4,6 +4,7 @@
 #include "core/diagnostics/error.h"
 #include "core/files/read_file.h"
 #include "core/mesh/bounds.h"
+#include "core/text/script_text.h"
 #include "exporters/viewer/packed_arrays.h"
 #include "exporters/viewer/patch_texels.h"
 #include "exporters/viewer/surface_tables.h"
@@ -45,15 +46,6 @@ std::string as_html(std::string_view text) {
     }
   }
   return html;
-}
-
-/// JSON that may stand inside a script element: nothing in it can end the element.
-std::string in_script(const json& document) {
-  std::string text = document.dump(-1, ' ', true, json::error_handler_t::replace);
-  for (std::size_t place = 0; (place = text.find('<', place)) != std::string::npos;) {
-    text.replace(place, 1, "\\u003c");
-  }
-  return text;
 }
 
 /// Bytes in pieces that the page can count while it is being loaded.
@@ -174,7 +166,8 @@ Page make_page(const fitting::Model& model, const Options& options) {
   const std::string data = in_pieces(packed, "tables") + in_pieces(image, "texture");
   const std::string title = as_html(options.title);
   const std::string poster = poster_element(options.poster);
-  const std::string facts = in_script(document);
+  const std::string facts =
+      core::in_script(document.dump(-1, ' ', true, json::error_handler_t::replace));
   Page page;
   page.html = filled(web_text("page.html"), {{"TITLE", title},
                                              {"STYLE", web_text("viewer.css")},

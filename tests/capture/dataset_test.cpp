@@ -79,7 +79,7 @@ void expect_same_dataset(const Dataset& read, const Dataset& written) {
   }
 }
 
-TEST(Dataset, transforms_come_back) {
+TEST(Dataset, TransformsComeBack) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "transforms.json";
   for (const auto& cameras : {std::vector{kWide}, std::vector{kRound}}) {
@@ -92,7 +92,7 @@ TEST(Dataset, transforms_come_back) {
   }
 }
 
-TEST(Dataset, colmap_models_come_back) {
+TEST(Dataset, ColmapModelsComeBack) {
   for (const ColmapForm form : {ColmapForm::text, ColmapForm::binary}) {
     const TemporaryFolder folder;
     const Dataset dataset = walk_round({kRational, kRound, kWide});
@@ -104,7 +104,7 @@ TEST(Dataset, colmap_models_come_back) {
 // nerfstudio's cameras.py, by hand: the ray of the place (u, v), counted from the image's corner,
 // is ((u - cx) / fl_x, -(v - cy) / fl_y, -1) in a camera with y up that looks along -z. The centre
 // of the pixel (i, j) is the place (i + 1/2, j + 1/2).
-TEST(Dataset, a_ray_of_transforms_is_that_of_the_camera) {
+TEST(Dataset, ARayOfTransformsIsThatOfTheCamera) {
   const TemporaryFolder folder;
   const auto path = write_file(folder.path() / "t.json", R"({"w": 64, "h": 48, "fl_x": 50,
     "fl_y": 40, "cx": 30, "cy": 20, "frames": [{"file_path": "./a.png", "transform_matrix":
@@ -122,7 +122,7 @@ TEST(Dataset, a_ray_of_transforms_is_that_of_the_camera) {
 
 // COLMAP's image centre of 64 x 48 pixels is (32, 24), between pixels 31 and 32: 31.5 from the
 // first centre. Its pose goes from world to camera: with no turn the camera stands at -t.
-TEST(Dataset, colmap_counts_from_the_corner) {
+TEST(Dataset, ColmapCountsFromTheCorner) {
   const TemporaryFolder folder;
   write_file(folder.path() / "cameras.txt", "# text\n7 SIMPLE_RADIAL 64 48 50 32 24 0.125\n");
   write_file(folder.path() / "images.txt",
@@ -137,7 +137,7 @@ TEST(Dataset, colmap_counts_from_the_corner) {
   EXPECT_EQ(lens.distortion[0], 0.125);
 }
 
-TEST(Dataset, lenses_that_a_form_cannot_hold_are_refused_by_name) {
+TEST(Dataset, LensesThatAFormCannotHoldAreRefusedByName) {
   const TemporaryFolder folder;
   expect_bad_input([&] { write_transforms(folder.path() / "t.json", walk_round({kRational})); },
                    "k4 to k6");
@@ -150,7 +150,7 @@ TEST(Dataset, lenses_that_a_form_cannot_hold_are_refused_by_name) {
   expect_bad_input([&] { read_colmap_model(folder.path()); }, "cameras.txt", "FOV");
 }
 
-TEST(Dataset, hostile_transforms_are_refused) {
+TEST(Dataset, HostileTransformsAreRefused) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "t.json";
   write_transforms(path, walk_round({kWide}));
@@ -182,7 +182,7 @@ TEST(Dataset, hostile_transforms_are_refused) {
 }
 
 /// Every length of a binary model but the whole is refused, and so are counts beyond the file.
-TEST(Dataset, hostile_colmap_models_are_refused) {
+TEST(Dataset, HostileColmapModelsAreRefused) {
   const TemporaryFolder folder;
   write_colmap_model(folder.path(), walk_round({kRational}), ColmapForm::binary);
   for (const char* name : {"cameras.bin", "images.bin"}) {
@@ -207,7 +207,7 @@ TEST(Dataset, hostile_colmap_models_are_refused) {
   }
 }
 
-TEST(Dataset, real_transforms_of_instant_ngp) {
+TEST(Dataset, RealTransformsOfInstantNgp) {
   const auto path = std::filesystem::path(SHEEN_SHARED_DATA) / "fox" / "transforms.json";
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "no " << path;
   const Dataset dataset = read_transforms(path);
@@ -221,7 +221,7 @@ TEST(Dataset, real_transforms_of_instant_ngp) {
 }
 
 /// A session of one frame per image; the mesh is only copied.
-TEST(Dataset, import_makes_a_session_in_the_order_of_names) {
+TEST(Dataset, ImportMakesASessionInTheOrderOfNames) {
   const TemporaryFolder folder;
   Dataset dataset = walk_round({kWide});
   std::reverse(dataset.frames.begin(), dataset.frames.end());
@@ -256,7 +256,7 @@ TEST(Dataset, import_makes_a_session_in_the_order_of_names) {
 }
 
 /// A real session -> COLMAP -> session: poses and camera to the digits of poses.txt.
-TEST(Dataset, real_session_comes_back_from_colmap) {
+TEST(Dataset, RealSessionComesBackFromColmap) {
   const auto temple = std::filesystem::path(SHEEN_SHARED_DATA) / "temple";
   if (!std::filesystem::exists(temple)) GTEST_SKIP() << "no " << temple;
   const TemporaryFolder folder;

@@ -55,15 +55,17 @@ export class Surface {
     this.makeBuffers(tables);
 
     // Textures, each in a unit of its own.
-    this.textures = [["patch_coefficients", textures.patchTexture(gl, tables.patches, model.patch)]];
-    // The renderer's shaders have names of their own for it.
-    this.textures[0][0] = { sparse: "patch_terms", mean: "patch_colours" }[model.patch.shader] || "patch_coefficients";
+    // The renderer's shaders have names of their own for the first.
+    const patches = { sparse: "patch_terms", mean: "patch_colours" }[model.patch.shader] || "patch_coefficients";
+    this.textures = [[patches, textures.patchTexture(gl, tables.patches, model.patch)]];
     if (model.patch.atoms) this.textures.push(["atoms", textures.atomTexture(gl, model.patch.atoms)]);
     if (tables.means) this.textures.push(["patch_means", textures.meanTexture(gl, tables.means)]);
     if (this.cells) this.textures.push(["patch_confidence", textures.confidenceTexture(gl, this.cells)]);
     if (texture) this.textures.push(["surface_texture", texture]);
     const features = [texture && "TEXTURED", tables.means && "MEANS", this.cells && "CONFIDENCE"].filter(Boolean);
     this.program = surfaceProgram(gl, model.patch, this.patches, features);
+    const names = ["clip_from_object", "eye_and_near", "split_px", "show_confidence", "fading", ...this.textures.map(([name]) => name)];
+    this.uniforms = Object.fromEntries(names.map((name) => [name, gl.getUniformLocation(this.program, name)]));
   }
 
   /** Centre and radius of the sphere that pictures are framed by. */
@@ -106,24 +108,23 @@ export class Surface {
   }
 
   draw(camera, { split, confidence, fading }) {
-    const { gl, program } = this;
-    const uniform = (name) => gl.getUniformLocation(program, name);
+    const { gl, uniforms } = this;
     gl.viewport(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
     gl.enable(gl.DEPTH_TEST);
     gl.enable(gl.CULL_FACE);
-    gl.useProgram(program);
+    gl.useProgram(this.program);
     this.textures.forEach(([name, texture], unit) => {
       gl.activeTexture(gl.TEXTURE0 + unit);
       gl.bindTexture(gl.TEXTURE_2D, texture);
-      gl.uniform1i(uniform(name), unit);
+      gl.uniform1i(uniforms[name], unit);
     });
-    gl.uniformMatrix4fv(uniform("clip_from_object"), false, camera.clipFromObject());
-    gl.uniform4f(uniform("eye_and_near"), ...camera.eye, 0);
-    gl.uniform1f(uniform("split_px"), split * gl.drawingBufferWidth);
-    gl.uniform1i(uniform("show_confidence"), confidence ? 1 : 0);
-    gl.uniform1i(uniform("fading"), fading ? 1 : 0);
+    gl.uniformMatrix4fv(uniforms.clip_from_object, false, camera.clipFromObject());
+    gl.uniform4f(uniforms.eye_and_near, ...camera.eye, 0);
+    gl.uniform1f(uniforms.split_px, split * gl.drawingBufferWidth);
+    gl.uniform1i(uniforms.show_confidence, confidence ? 1 : 0);
+    gl.uniform1i(uniforms.fading, fading ? 1 : 0);
     gl.drawElements(gl.TRIANGLES, this.indexCount, gl.UNSIGNED_INT, 0);
   }
 
