@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/import.h"
 
+#include "capture/dataset/dataset_formats.h"
 #include "capture/dataset/import_session.h"
 
 #include <fmt/format.h>

@@ -2,8 +2,6 @@
 #include "capture/dataset/import_session.h"
 
 #include "capture/calibration/camera_file.h"
-#include "capture/dataset/colmap_files.h"
-#include "capture/dataset/transforms_file.h"
 #include "capture/pose/trajectory.h"
 #include "capture/session/session_file.h"
 #include "core/diagnostics/error.h"
@@ -34,18 +32,6 @@ std::string common_ending(const Dataset& dataset, const fs::path& folder) {
 }
 
 }  // namespace
-
-Dataset read_dataset(const fs::path& path) {
-  if (!fs::is_directory(path)) return read_transforms(path);
-  if (fs::exists(path / "transforms.json")) return read_transforms(path / "transforms.json");
-  for (const char* place : {"", "sparse/0", "sparse", "colmap/sparse/0"}) {
-    for (const char* name : {"cameras.bin", "cameras.txt"}) {
-      if (fs::exists(path / place / name)) return read_colmap_model(path / place);
-    }
-  }
-  throw core::bad_input(path, "holds neither a transforms.json nor a COLMAP model",
-                        "name the folder that holds cameras.txt or cameras.bin");
-}
 
 void write_imported_session(const SessionImport& import, const fs::path& folder) {
   Dataset dataset = import.dataset;

@@ -7,10 +7,6 @@
 
 namespace sheen::capture {
 
-/// Reads a data set: a transforms.json, or a folder that has one or a COLMAP model (itself, or in
-/// sparse/0, sparse or colmap/sparse/0). Throws core::Error (bad_input).
-Dataset read_dataset(const std::filesystem::path& path);
-
 /// What a session is made of.
 struct SessionImport {
   Dataset dataset;

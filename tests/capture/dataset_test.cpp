@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "capture/dataset/colmap_files.h"
+#include "capture/dataset/dataset_formats.h"
 #include "capture/dataset/import_session.h"
 #include "capture/dataset/transforms_file.h"
 #include "capture/pose/trajectory.h"
