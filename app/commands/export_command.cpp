@@ -5,6 +5,7 @@
 #include "app/commands/export_dataset.h"
 #include "app/commands/frame_options.h"
 #include "app/commands/table_options.h"
+#include "core/diagnostics/error.h"
 #include "exporters/format.h"
 #include "fitting/model_file/model_file.h"
 
@@ -39,6 +40,11 @@ void export_model(const ExportOptions& options, const CommandContext& context) {
   fitting::apply(options.given, format.name, settings->table());
   settings->check();
   context.check_outputs({options.output});
+  std::error_code absent;
+  if (std::filesystem::equivalent(options.source, options.output, absent)) {
+    throw core::bad_input(options.output, "is the model itself, which holds more than any export",
+                          "choose another name for the file");
+  }
 
   // Convert.
   const fitting::Model model = fitting::read_model(options.source);
