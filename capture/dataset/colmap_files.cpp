@@ -322,6 +322,10 @@ std::optional<Path> find_colmap_model(const Path& path) {
   return std::nullopt;
 }
 
+Dataset read_named_model(const Path& folder, const Path& /*images*/) {
+  return read_colmap_model(folder);
+}
+
 template <ColmapForm form>
 void write_into_project(const Path& folder, const Dataset& dataset) {
   const Path model = folder / "sparse" / "0";
@@ -356,12 +360,12 @@ void write_colmap_model(const Path& folder, const Dataset& dataset, ColmapForm f
 constinit const DatasetFormat kColmapFormat{.name = "colmap",
                                             .sentence = "COLMAP, 3DGS: images and a binary model",
                                             .find = find_colmap_model,
-                                            .read = read_colmap_model,
+                                            .read = read_named_model,
                                             .write = write_into_project<ColmapForm::binary>};
 constinit const DatasetFormat kColmapTextFormat{.name = "colmap-text",
                                                 .sentence = "the same with a model of text files",
                                                 .find = find_colmap_model,
-                                                .read = read_colmap_model,
+                                                .read = read_named_model,
                                                 .write = write_into_project<ColmapForm::text>};
 
 }  // namespace sheen::capture

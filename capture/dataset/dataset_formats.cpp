@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "capture/dataset/dataset_formats.h"
 
+#include "capture/dataset/bundler_file.h"
 #include "capture/dataset/colmap_files.h"
+#include "capture/dataset/metashape_file.h"
 #include "capture/dataset/transforms_file.h"
 #include "core/diagnostics/error.h"
 
@@ -10,17 +12,22 @@
 namespace sheen::capture {
 
 std::span<const DatasetFormat* const> dataset_formats() {
-  static constexpr std::array<const DatasetFormat*, 3> all{&kNerfstudioFormat, &kColmapFormat,
-                                                           &kColmapTextFormat};
+  static constexpr std::array<const DatasetFormat*, 5> all{
+      &kNerfstudioFormat, &kColmapFormat, &kColmapTextFormat, &kBundlerFormat, &kMetashapeFormat};
   return all;
 }
 
-Dataset read_dataset(const std::filesystem::path& path) {
+std::filesystem::path images_of_dataset(const std::filesystem::path& path) {
+  if (!std::filesystem::is_directory(path)) return path.parent_path();
+  return std::filesystem::exists(path / "transforms.json") ? path : path / "images";
+}
+
+Dataset read_dataset(const std::filesystem::path& path, const std::filesystem::path& images) {
   if (!std::filesystem::exists(path)) {
     throw core::bad_input(path, "there is no such file or folder", "check the path");
   }
   for (const DatasetFormat* format : dataset_formats()) {
-    if (const auto found = format->find(path)) return format->read(*found);
+    if (const auto found = format->find(path)) return format->read(*found, images);
   }
   std::string known;
   for (const DatasetFormat* format : dataset_formats()) {

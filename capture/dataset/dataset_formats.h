@@ -19,8 +19,9 @@ struct DatasetFormat {
   /// The file or folder of this format that a user means by `path`; nothing where there is none.
   std::optional<std::filesystem::path> (*find)(const std::filesystem::path& path);
 
-  /// Reads what `find` found. Throws core::Error (bad_input).
-  Dataset (*read)(const std::filesystem::path& found);
+  /// Reads what `find` found; `images` is the folder that the images' names are relative to. Throws
+  /// core::Error (bad_input).
+  Dataset (*read)(const std::filesystem::path& found, const std::filesystem::path& images);
 
   /// Writes what describes the images into their folder, which exists; null: only read. Throws
   /// core::Error (bad_input) for what the format cannot hold.
@@ -30,7 +31,11 @@ struct DatasetFormat {
 /// In the order in which users should see them.
 std::span<const DatasetFormat* const> dataset_formats();
 
+/// Where the images' names are relative to, unless a user says otherwise: the folder of a file, and
+/// of a folder itself (transforms.json) or the images/ in it.
+std::filesystem::path images_of_dataset(const std::filesystem::path& path);
+
 /// Reads a data set of whatever format. Throws core::Error (bad_input).
-Dataset read_dataset(const std::filesystem::path& path);
+Dataset read_dataset(const std::filesystem::path& path, const std::filesystem::path& images);
 
 }  // namespace sheen::capture

@@ -6,6 +6,7 @@
 #include "capture/session/session_file.h"
 #include "core/diagnostics/error.h"
 #include "core/files/staged_output.h"
+#include "core/mesh/read_mesh.h"
 #include "core/text/lower_case.h"
 
 #include <fmt/format.h>
@@ -31,6 +32,21 @@ std::string common_ending(const Dataset& dataset, const fs::path& folder) {
   return core::lower_case(first);
 }
 
+/// Copies the mesh, or writes it in metres. Returns its name.
+std::string put_mesh(const SessionImport& import, const fs::path& folder) {
+  if (!import.mesh_has_unit || import.metres_per_unit == 1) {
+    const std::string name = "object" + core::lower_case(import.mesh.extension().string());
+    copy_into_session(import.mesh, folder / name);
+    return name;
+  }
+  core::Mesh mesh = core::read_mesh(import.mesh);
+  for (Eigen::Vector3f& position : mesh.positions) {
+    position = (import.metres_per_unit * (position.cast<double>() + mesh.offset)).cast<float>();
+  }
+  core::write_ply(folder / "object.ply", mesh);
+  return "object.ply";
+}
+
 }  // namespace
 
 void write_imported_session(const SessionImport& import, const fs::path& folder) {
@@ -46,7 +62,6 @@ void write_imported_session(const SessionImport& import, const fs::path& folder)
   std::sort(dataset.frames.begin(), dataset.frames.end(),
             [](const auto& a, const auto& b) { return a.image < b.image; });
   const std::string ending = common_ending(dataset, import.images);
-  const std::string mesh = "object" + core::lower_case(import.mesh.extension().string());
 
   core::StagedOutput staged(folder);
   fs::create_directories(staged.path() / "images");
@@ -59,7 +74,7 @@ void write_imported_session(const SessionImport& import, const fs::path& folder)
     pose.translation() *= import.metres_per_unit;
     poses.push_back({static_cast<double>(i), pose});
   }
-  copy_into_session(import.mesh, staged.path() / mesh);
+  const std::string mesh = put_mesh(import, staged.path());
   write_camera(staged.path() / "camera.yaml", dataset.cameras.front());
   write_trajectory(staged.path() / "poses.txt", poses);
   write_session_file(staged.path(),

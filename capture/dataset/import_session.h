@@ -13,6 +13,7 @@ struct SessionImport {
   std::filesystem::path images;  ///< the folder that the frames' names are relative to
   std::filesystem::path mesh;    ///< in the data set's axes and, like sessions' meshes, in metres
   double metres_per_unit = 1;    ///< of the data set's poses
+  bool mesh_has_unit = false;    ///< the mesh is in the unit of the poses, not in metres
 };
 
 /// Writes a session folder: images copied and numbered in the order of their names, camera, poses,

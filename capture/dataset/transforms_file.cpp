@@ -198,6 +198,10 @@ std::optional<Path> find_transforms(const Path& path) {
   return path.extension() == ".json" ? std::optional(path) : std::nullopt;
 }
 
+Dataset read_transforms_alone(const Path& path, const Path& /*images*/) {
+  return read_transforms(path);
+}
+
 void write_transforms_into(const Path& folder, const Dataset& dataset) {
   write_transforms(folder / "transforms.json", dataset);
 }
@@ -269,7 +273,7 @@ constinit const DatasetFormat kNerfstudioFormat{
     .name = "nerfstudio",
     .sentence = "nerfstudio, instant-ngp: images and transforms.json",
     .find = find_transforms,
-    .read = read_transforms,
+    .read = read_transforms_alone,
     .write = write_transforms_into};
 
 }  // namespace sheen::capture

@@ -151,6 +151,79 @@ def check_splats(folder):
     return glb
 
 
+def splat_picture(splats, camera_from_splats, focal, centre, size):
+    """Kerbl et al.'s rasteriser: nearest last in sorting, first in mixing; 0.3 px^2 more, opacity at most 0.99."""
+    turn, shift = camera_from_splats[:, :3], camera_from_splats[:, 3]
+    eye = -turn.T @ shift
+    p = splats["position"] @ turn.T + shift
+    towards = splats["position"] - eye
+    towards /= np.linalg.norm(towards, axis=1, keepdims=True)
+    shown = np.array([colours(h[None], d)[0] for h, d in zip(splats["harmonics"], towards)])
+    x, y, z = p.T
+    jacobian = np.zeros((len(p), 2, 3))
+    jacobian[:, 0, 0], jacobian[:, 0, 2] = focal[0] / z, -focal[0] * x / z**2
+    jacobian[:, 1, 1], jacobian[:, 1, 2] = focal[1] / z, -focal[1] * y / z**2
+    to_pixels = jacobian @ turn
+    spread = to_pixels @ covariances(splats) @ to_pixels.transpose(0, 2, 1) + 0.3 * np.eye(2)
+    inverse = np.linalg.inv(spread)
+    middle = np.column_stack([x / z, y / z]) * focal + centre - 0.5  # counted from the first pixel's centre
+    reach = np.ceil(3 * np.sqrt(np.linalg.eigvalsh(spread)[:, 1])).astype(int)
+    picture, through = np.zeros((size[1], size[0], 3)), np.ones((size[1], size[0]))
+    for i in np.argsort(z):
+        (left, top), r = np.round(middle[i]).astype(int), reach[i]
+        columns = np.arange(max(0, left - r), min(size[0], left + r + 1))
+        rows = np.arange(max(0, top - r), min(size[1], top + r + 1))
+        if not len(columns) or not len(rows):
+            continue
+        dx, dy = columns - middle[i, 0], (rows - middle[i, 1])[:, None]
+        a = inverse[i]
+        alpha = splats["opacity"][i] * np.exp(-0.5 * (a[0, 0] * dx**2 + 2 * a[0, 1] * dx * dy + a[1, 1] * dy**2))
+        alpha = np.minimum(alpha, 0.99)
+        alpha[alpha < 1 / 255] = 0
+        part = np.s_[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1]
+        picture[part] += (through[part] * alpha)[:, :, None] * shown[i]
+        through[part] *= 1 - alpha
+    return picture
+
+
+def eroded(mask):
+    for _ in range(2):
+        inner = mask.copy()
+        inner[1:] &= mask[:-1]
+        inner[:-1] &= mask[1:]
+        inner[:, 1:] &= mask[:, :-1]
+        inner[:, :-1] &= mask[:, 1:]
+        mask = inner
+    return mask
+
+
+def check_splat_pictures(sheen, session, splats, folder):
+    """Splats drawn by a rasteriser of splats against photographs: both exports at once."""
+    try:
+        from PIL import Image
+    except ImportError:
+        return
+    run(sheen, "export", session, "-o", folder / "views", "--format", "nerfstudio", "--undistort", "--quiet")
+    file = json.loads((folder / "views" / "transforms.json").read_text())
+    place = json.loads((session / "session.json").read_text())["object"]["T_stage_object"]
+    board_from_object = np.reshape(place, (4, 4))
+    object_from_splats = np.eye(4)
+    object_from_splats[:3, :3] = [[1, 0, 0], [0, 0, 1], [0, -1, 0]]  # (x, -z, y) back to (x, y, z)
+    scores = []
+    for frame in file["frames"][::4]:
+        board_from_camera = np.array(frame["transform_matrix"]) @ np.diag([1.0, -1.0, -1.0, 1.0])
+        pose = np.linalg.inv(board_from_camera) @ board_from_object @ object_from_splats
+        picture = splat_picture(splats, pose[:3], np.array([file["fl_x"], file["fl_y"]]),
+                                np.array([file["cx"], file["cy"]]), (file["w"], file["h"]))
+        image = np.asarray(Image.open(folder / "views" / frame["file_path"])) / 255
+        mask = eroded(np.asarray(Image.open(folder / "views" / frame["mask_path"])) > 0)
+        scores.append(-10 * np.log10(np.mean((np.clip(picture, 0, 1) - image)[mask] ** 2)))
+        Image.fromarray((255 * np.clip(np.hstack([picture, image * mask[:, :, None]]), 0, 1)).astype(np.uint8)).save(
+            folder / f"splats-{len(scores)}.png")
+    print(f"  drawn as splats: {np.mean(scores):.2f} dB on {len(scores)} views")
+    assert np.mean(scores) > 22, scores
+
+
 def foreign_facts(repository, files):
     foreign = repository / "tests" / "exporters" / "foreign"
     if not shutil.which("node") or not (foreign / "node_modules").exists():
@@ -256,6 +329,7 @@ def check_model(sheen, repository, patches, folder):
     triangles = read_glb(folder / "mesh.glb")[0]["accessors"][3]["count"] // 3
     check_texture(folder, patches)
     splats = check_splats(folder)
+    check_splat_pictures(sheen, sample / "held_out", read_splat_ply(folder / FILES[4]), folder)
     check_assimp(folder)
     facts = foreign_facts(repository, [folder / name for name in FILES])
     if facts:
