@@ -140,8 +140,9 @@ class Compare : public testing::Test {
 };
 
 void expect_finite_figures(const nlohmann::json& row) {
-  for (const char* name : {"psnr", "ssim", "rmse", "fit_ms", "fit_ms_per_frame",
-                           "render_ms_per_view", "coefficients_per_patch", "model_bytes"}) {
+  for (const char* name :
+       {"psnr", "live_psnr", "ssim", "rmse", "fit_ms", "fit_ms_per_frame", "render_ms_per_view",
+        "coefficients_per_patch", "model_bytes", "light_field_bytes"}) {
     ASSERT_TRUE(row.at(name).is_number()) << name;  // NaN and infinity are null in JSON
     EXPECT_GT(row.at(name).get<double>(), 0) << name;
   }
