@@ -13,7 +13,7 @@
 namespace sheen::pipeline {
 namespace {
 
-constexpr std::size_t kMostGrains = 16;
+constexpr std::size_t kMostGrains = 16, kGrainSpacing = 4;
 constexpr int kGrainStep_px = 3;
 // Chosen on bench/stress with seed 1 and the recordings named in docs/stability-sessions.md.
 constexpr double kGrainy = 20;   // grey levels: as much as shades differ by
@@ -34,7 +34,7 @@ CaptureEvidence::CaptureEvidence(const capture::Session& session, const core::Me
       middle_(core::bounds_of(mesh).center().cast<double>()),
       outline_(mesh),
       light_(patch_count),
-      grains_(kMostGrains) {
+      grains_(kMostGrains, kGrainSpacing) {
   if (board) corners_.emplace(*board, session.camera);
 }
 

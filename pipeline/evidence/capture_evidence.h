@@ -18,8 +18,8 @@
 namespace sheen::pipeline {
 
 /// What a recording's own data show to be wrong with it, by the trace that each fault leaves:
-/// corners of tags, outlines, brightness, grain, and from where the object was seen. Looks at some
-/// forty frames spread over the recording, so that long ones cost no more. The result does not
+/// corners of tags, outlines, brightness, grain, and from where the object was seen. Looks at every
+/// fourth frame, and in long recordings at fewer. The result does not
 /// depend on what is fitted.
 class CaptureEvidence {
  public:

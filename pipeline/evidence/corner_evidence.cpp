@@ -15,7 +15,7 @@
 namespace sheen::pipeline {
 namespace {
 
-constexpr std::size_t kMostCornerViews = 32;
+constexpr std::size_t kMostCornerViews = 24, kCornerSpacing = 4;
 constexpr std::size_t kFewestCorners = 12;
 constexpr int kFewestNumbers = 600;  // below it a pattern of three unknowns fits noise
 // Chosen on bench/stress with seed 1 and the recordings named in docs/stability-sessions.md: what a
@@ -23,6 +23,7 @@ constexpr int kFewestNumbers = 600;  // below it a pattern of three unknowns fit
 constexpr double kLens_px = 0.5, kBend_px = 0.3, kShutter_px = 0.6;
 constexpr double kPatternShare = 0.35;
 
+constexpr double kStep = 1e-4;  // of a numerical derivative
 constexpr int kLens = 0, kBend = 3, kShutter = 6;
 
 cv::Mat grey_of(const capture::Frame& frame) {
@@ -32,11 +33,11 @@ cv::Mat grey_of(const capture::Frame& frame) {
   return grey;
 }
 
-core::CameraModel with_change(const core::CameraModel& camera, int unknown, double step) {
+core::CameraModel with_change(const core::CameraModel& camera, int unknown) {
   auto changed = camera.intrinsics();
-  if (unknown == 0) changed.focal_px *= 1 + step;
-  if (unknown == 1) changed.distortion[0] += step;
-  if (unknown == 2) changed.distortion[1] += step;
+  if (unknown == 0) changed.focal_px *= 1 + kStep;
+  if (unknown == 1) changed.distortion[0] += kStep;
+  if (unknown == 2) changed.distortion[1] += kStep;
   return core::CameraModel(changed);
 }
 
@@ -45,9 +46,10 @@ core::CameraModel with_change(const core::CameraModel& camera, int unknown, doub
 CornerEvidence::CornerEvidence(const capture::Board& board, const core::CameraModel& camera)
     : board_(board),
       camera_(camera),
+      changed_{with_change(camera, 0), with_change(camera, 1), with_change(camera, 2)},
       middle_(Eigen::Vector3d::Zero()),
       tracker_(board, camera, capture::BoardTagFinder(board, camera).family()),
-      views_(kMostCornerViews) {
+      views_(kMostCornerViews, kCornerSpacing) {
   Eigen::AlignedBox3d box;
   for (const auto& [id, tag] : board.tags) {
     for (const Eigen::Vector3d& corner : tag.corners_in_board()) box.extend(corner);
@@ -59,7 +61,6 @@ CornerEvidence::CornerEvidence(const capture::Board& board, const core::CameraMo
 void CornerEvidence::look_at(const capture::Frame& frame,
                              const Eigen::Isometry3d& camera_from_board,
                              const std::optional<Eigen::Isometry3d>& last) {
-  constexpr double step = 1e-4;
   if (!views_.is_due()) return;
   View view;
   const auto pose = tracker_.track(grey_of(frame), camera_from_board);
@@ -89,8 +90,8 @@ void CornerEvidence::look_at(const capture::Frame& frame,
       by_pose.block<2, 1>(row, 3 + axis) = seen->pixel_by_point * unit;
     }
     for (int unknown = 0; unknown < 3; ++unknown) {
-      const auto moved = with_change(camera_, unknown, step).project(in_camera);
-      if (moved) by_fault.block<2, 1>(row, kLens + unknown) = (*moved - seen->pixel) / step;
+      const auto moved = changed_[static_cast<std::size_t>(unknown)].project(in_camera);
+      if (moved) by_fault.block<2, 1>(row, kLens + unknown) = (*moved - seen->pixel) / kStep;
     }
     const Eigen::Vector3d on_board = (in_board - middle_) / extent_m_;
     const Eigen::Vector2d by_rise =
@@ -163,11 +164,12 @@ std::vector<Finding> CornerEvidence::findings() const {
                          100 * lens.solution[kLens], explained(lens))}};
   }
   if (is_seen(bend, kBend_px)) {
-    return {{"bent-board",
-             fmt::format(
-                 "the board is not as flat, or as bent, as board.yaml says: a bend of {:.0f} "
-                 "mm explains {}; glue it to something stiff, or measure it (sheen survey)",
-                 1000 * bend.solution.segment<3>(kBend).cwiseAbs().maxCoeff(), explained(bend))}};
+    return {
+        {"bent-board",
+         fmt::format(
+             "the board is not as flat, or as bent, as board.yaml says: a bend of at least {:.0f} "
+             "mm explains {}; glue it to something stiff, or measure it (sheen survey)",
+             1000 * bend.solution.segment<3>(kBend).cwiseAbs().maxCoeff(), explained(bend))}};
   }
   if (is_seen(shutter, kShutter_px)) {
     return {{"rolling-shutter",

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -53,7 +54,8 @@ class CornerEvidence {
  private:
   capture::Board board_;
   core::CameraModel camera_;
-  double extent_m_ = 0;  ///< half of the board's longer side
+  std::array<core::CameraModel, 3> changed_;  ///< focal length, first two terms of distortion
+  double extent_m_ = 0;                       ///< half of the board's longer side
   Eigen::Vector3d middle_;
   capture::TagTracker tracker_;
   Thinned<View> views_;

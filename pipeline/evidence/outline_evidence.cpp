@@ -17,14 +17,14 @@
 namespace sheen::pipeline {
 namespace {
 
-constexpr std::size_t kMostOutlineViews = 40;
+constexpr std::size_t kMostOutlineViews = 24, kOutlineSpacing = 4;
 constexpr double kReach = 0.12;  // of the object's radius: how far off an outline may be
 constexpr double kLeastReach_px = 6, kMostReach_px = 40;
 constexpr double kFineReach_px = 3;
-constexpr double kPointsAcross = 40;  // on the diameter
+constexpr double kPointsAcross = 32;  // on the diameter
 constexpr double kFinestSpacing_px = 3;
 constexpr std::size_t kFewestMatches = 15;  // of a view
-constexpr std::size_t kFewestViews = 6, kFewestOnASide = 4;
+constexpr std::size_t kFewestViews = 6, kFewestOnASide = 3;
 constexpr int kOutlineRounds = 6;
 
 // Chosen on bench/stress with seed 1 and the recordings named in docs/stability-sessions.md.
@@ -77,7 +77,7 @@ System system_of(const View& view, double scale_px,
 }  // namespace
 
 OutlineEvidence::OutlineEvidence(const core::Mesh& mesh)
-    : contours_(mesh), views_(kMostOutlineViews) {
+    : contours_(mesh), views_(kMostOutlineViews, kOutlineSpacing) {
   radius_m_ = contours_.bounds().diagonal().norm() / 2;
 }
 

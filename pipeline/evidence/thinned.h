@@ -7,13 +7,14 @@
 
 namespace sheen::pipeline {
 
-/// Items of evenly spaced frames of a recording whose length is not known: every frame at first;
-/// whenever `most` are kept, every second one goes and the spacing doubles. Between most / 2 and
-/// most items stay, and at most (1 + log2(frames / most)) * most frames are ever looked at.
+/// Items of evenly spaced frames of a recording whose length is not known: every
+/// `spacing`-th at first; whenever `most` are kept, every second one goes and the spacing doubles.
+/// Between most / 2 and most items stay, and at most (1 + log2(frames / most)) * most frames are
+/// ever looked at.
 template <typename Item>
 class Thinned {
  public:
-  explicit Thinned(std::size_t most) : most_(most) {}
+  explicit Thinned(std::size_t most, std::size_t spacing = 1) : most_(most), spacing_(spacing) {}
 
   /// Whether the next frame is to be looked at. Asked once for every frame.
   bool is_due() { return frames_++ % spacing_ == 0; }
@@ -30,7 +31,7 @@ class Thinned {
   [[nodiscard]] const std::vector<Item>& items() const { return items_; }
 
  private:
-  std::size_t most_, frames_ = 0, spacing_ = 1;
+  std::size_t most_, spacing_, frames_ = 0;
   std::vector<Item> items_;
 };
 
