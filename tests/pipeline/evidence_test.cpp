@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Recordings with one fault of known size, and without.
+#include "pipeline/evidence/capture_evidence.h"
 #include "pipeline/evidence/corner_evidence.h"
 #include "pipeline/evidence/light_evidence.h"
 #include "pipeline/evidence/outline_evidence.h"
@@ -277,7 +278,7 @@ CornerEvidence corners_of(const core::CameraModel& told_camera, const capture::B
   for (int i = 0; i < 8; ++i) {
     const auto pose = look_at_board(0.24, 0.9 + 0.05 * (i % 3), 0.8 * i);
     capture::Frame frame;
-    frame.image = capture::test::render_board(board, camera, pose, {.supersampling = 3});
+    frame.image = capture::test::render_board(board, camera, pose, {.supersampling = 2});
     frame.index = i;
     for (int k = 0; k < kLookedAt; ++k) evidence.look_at(frame, pose, std::nullopt);
   }
@@ -318,6 +319,41 @@ TEST(CornerEvidence, ABoardThatIsNotAsBentAsToldIsSaid) {
   EXPECT_LT(bend.solution[3], -0.003);
   EXPECT_GT(bend.solution[3], -0.006);
   EXPECT_EQ(causes(evidence.findings()), Causes{"bent-board"});
+}
+
+// --- Everything: a drop that no image shows, so that only coverage and grain can be told.
+
+Causes causes_of_walk(int frames, double degrees, double noise) {
+  const core::Mesh mesh = drop(1, Eigen::Vector3d::Zero());
+  capture::Session session;
+  session.camera = capture::test::make_camera(160, 120, false);
+  CaptureEvidence evidence(session, mesh, mesh.positions.size(), std::nullopt);
+  cv::theRNG().state = 1;
+  for (int i = 0; i < frames; ++i) {
+    capture::Frame frame;
+    frame.index = i;
+    frame.image = cv::Mat(120, 160, CV_8UC3);
+    cv::randn(frame.image, cv::Scalar::all(128), cv::Scalar::all(noise));
+    const double azimuth = degrees / 180 * std::numbers::pi * i / frames;
+    const Eigen::Isometry3d pose = look_at_board(0.3, 0.8, azimuth);
+    const core::VertexView view;
+    const core::SampleBatch samples;
+    evidence.look_at(frame, pose, {i, frame.image, session.camera, pose, view, samples});
+  }
+  return causes(evidence.findings());
+}
+
+// 24 frames over 360 degrees leave gaps of 15; over 180 degrees the gap is the other half and 7.5.
+TEST(CaptureEvidence, OneSideAndFewFramesAreSaid) {
+  EXPECT_EQ(causes_of_walk(24, 360, 1), Causes{});
+  EXPECT_EQ(causes_of_walk(24, 180, 1), Causes{"one-side"});
+  EXPECT_EQ(causes_of_walk(5, 360, 1), Causes{"few-frames"});
+}
+
+// Noise of 30 levels is more than the 20 that are said, noise of 10 is less.
+TEST(CaptureEvidence, GrainIsMeasured) {
+  EXPECT_EQ(causes_of_walk(24, 360, 10), Causes{});
+  EXPECT_EQ(causes_of_walk(24, 360, 30), Causes{"noise"});
 }
 
 }  // namespace
