@@ -280,7 +280,7 @@ std::vector<Finding> LightEvidence::drifts(const Verdict& verdict) {
   if (is_seen(verdict.exposure_stops)) {
     findings.push_back({"exposure-drift",
                         fmt::format("the exposure changes by {:.1f} stops over the recording; lock "
-                                    "it in the camera, or replay with --exposure",
+                                    "it in the camera: --exposure takes out a part only",
                                     verdict.exposure_stops)});
   }
   if (is_seen(verdict.balance_stops)) {
