@@ -112,10 +112,15 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
   nlohmann::ordered_json stages;
   for (const char* stage : kStages) stages[stage] = to_json(report.timer.summary(stage));
   stages["align"] = to_json(report.timer.summary("align"));
+  stages["evidence"] = to_json(report.timer.summary("evidence"));
   nlohmann::ordered_json vertices;
   for (std::size_t i = 1; i < frames.vertex_rejections.size(); ++i) {
     vertices[std::string(name_of(static_cast<core::VertexRejection>(i)))] =
         frames.vertex_rejections[i];
+  }
+  nlohmann::ordered_json findings = nlohmann::ordered_json::array();
+  for (const pipeline::Finding& finding : report.findings) {
+    findings.push_back({{"cause", finding.cause}, {"says", finding.line}});
   }
   nlohmann::ordered_json rejections = nlohmann::ordered_json::object();
   for (const auto& [reason, count] : frames.pose_rejections) rejections[reason] = count;
@@ -151,6 +156,7 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
                                   ? nlohmann::ordered_json(nullptr)
                                   : nlohmann::ordered_json(median_of(frames.reprojection_px))},
           {"rejections", rejections},
+          {"findings", findings},
           {"vertex_rejections", vertices},
           {"options", report.options}};
 }

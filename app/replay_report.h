@@ -5,6 +5,7 @@
 #include "core/diagnostics/stage_timer.h"
 #include "evaluation/views/view_evaluation.h"
 #include "fitting/fitter.h"
+#include "pipeline/evidence/finding.h"
 #include "pipeline/frame_statistics.h"
 
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace sheen::app {
 
@@ -32,6 +34,7 @@ struct ReplayReport {
       held_out_mean;  ///< of the mean colours, on the same views
   /// Of the fitted representation, with the held-out poses refined against it too.
   std::optional<evaluation::EvaluationSummary> held_out_refined_poses;
+  std::vector<pipeline::Finding> findings;  ///< what the data show to be wrong with the recording
   nlohmann::ordered_json options;
 };
 

@@ -16,6 +16,8 @@
 
 namespace sheen::pipeline {
 
+class CaptureEvidence;
+
 /// A view as it was integrated: enough to observe it once more.
 struct IntegratedView {
   int frame_index = 0;
@@ -32,7 +34,8 @@ class FitStage {
     const core::Mesh& mesh;
     ViewObserver& observer;
     SharedModel& model;
-    fitting::Fitter* mean;  ///< integrates the same samples for comparison; may be null
+    fitting::Fitter* mean;      ///< integrates the same samples for comparison; may be null
+    CaptureEvidence& evidence;  ///< looks at what is fitted
     HoldOut hold_out;
     PhotometricOptions photometric = {};
     /// Asked before a frame's samples are integrated, on the thread that fits; false keeps them

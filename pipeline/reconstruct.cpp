@@ -7,6 +7,7 @@
 #include "fitting/descriptor.h"
 #include "fitting/guidance/capture_score.h"
 #include "pipeline/check_seen.h"
+#include "pipeline/evidence/capture_evidence.h"
 #include "pipeline/frame_loop.h"
 #include "pipeline/observation_replay.h"
 #include "pipeline/patch_mesh.h"
@@ -58,6 +59,8 @@ struct Reconstruction::Impl {
                                                const fitting::OptionValues& values,
                                                fitting::UndoableFitter*& history);
   bool admit(const core::SampleBatch& batch, FrameListener* listener);
+  void tell_new(const std::vector<Finding>& found, ProgressSink& sink);
+  void tell_early(ProgressSink& sink);
   void finish();
 
   ReconstructionOptions options;
@@ -78,6 +81,9 @@ struct Reconstruction::Impl {
   std::optional<fitting::guidance::CaptureScore> score;  ///< where mismatches are refused
   std::optional<PoseStage> poses;
   std::optional<int> frame_count;
+  std::optional<CaptureEvidence> evidence;
+  std::vector<Finding> findings;
+  int next_told = 64;  ///< frames after which a live recording is judged; doubles
   std::optional<FitStage> stage;
   FrameListener* listener = nullptr;
   core::StageTimer times;
@@ -115,12 +121,15 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
   frame_count = frames->frame_count();
   if (!is_live) check_stamps(session, options.frames, frame_count);
   poses.emplace(std::move(frames), pose_estimator());
+  evidence.emplace(session, object_mesh, mesh.positions.size(),
+                   board ? board->board : tag_board(session, options.frames.pose_source));
   stage.emplace(FitStage::Parts{
       .session = session,
       .mesh = mesh,
       .observer = *observer,
       .model = *model,
       .mean = mean.get(),
+      .evidence = *evidence,
       .hold_out = {options.frames.hold_out},
       .photometric = options.photometric,
       .admit = [this](const core::SampleBatch& batch) { return admit(batch, listener); }});
@@ -205,6 +214,22 @@ bool Reconstruction::Impl::admit(const core::SampleBatch& batch, FrameListener* 
   return true;
 }
 
+/// Says every cause once, in the words of when it was first seen.
+void Reconstruction::Impl::tell_new(const std::vector<Finding>& found, ProgressSink& sink) {
+  for (const Finding& finding : found) {
+    if (std::ranges::find(findings, finding.cause, &Finding::cause) != findings.end()) continue;
+    sink.note(finding.line);
+    findings.push_back(finding);
+  }
+}
+
+/// Whoever records can still mend it.
+void Reconstruction::Impl::tell_early(ProgressSink& sink) {
+  if (!is_live || evidence->frames() < next_told) return;
+  next_told *= 2;
+  tell_new(evidence->faults(), sink);
+}
+
 void Reconstruction::Impl::finish() {
   const double start_ms = core::own_cpu_ms();
   model->finish();
@@ -230,6 +255,7 @@ void Reconstruction::run(ProgressSink& sink, FrameListener* listener) {
         }
         impl_->look_at_sides(tracked, sink);
         impl_->stage->integrate(tracked);
+        impl_->tell_early(sink);
         sink.progress({"fitting", frames.frames_read, impl_->frame_count.value_or(0),
                        fmt::format("{} posed", frames.posed.size())});
         if (listener != nullptr) listener->on_frame(tracked, frames);
@@ -240,6 +266,7 @@ void Reconstruction::run(ProgressSink& sink, FrameListener* listener) {
   if (!frames.posed.empty()) impl_->scene.finish(sink);
   check_something_was_seen(impl_->session, impl_->options.frames, frames,
                            impl_->fitter->statistics().samples, impl_->scene);
+  impl_->tell_new(impl_->evidence->findings(), sink);
   impl_->finish();
 }
 
@@ -274,6 +301,10 @@ const fitting::LightField* Reconstruction::mean_colours() const {
 
 const FrameStatistics& Reconstruction::frames() const {
   return impl_->stage->statistics();
+}
+
+const std::vector<Finding>& Reconstruction::findings() const {
+  return impl_->findings;
 }
 
 const core::StageTimer& Reconstruction::times() const {

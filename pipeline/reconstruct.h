@@ -8,6 +8,7 @@
 #include "core/mesh/mesh.h"
 #include "fitting/fitter.h"
 #include "fitting/undo/undoable_fitter.h"
+#include "pipeline/evidence/finding.h"
 #include "pipeline/fit_stage.h"
 #include "pipeline/frame_statistics.h"
 #include "pipeline/options.h"
@@ -17,6 +18,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace sheen::pipeline {
 
@@ -55,8 +57,9 @@ class Reconstruction {
   Reconstruction(const Reconstruction&) = delete;
   Reconstruction& operator=(const Reconstruction&) = delete;
 
-  /// Fits every frame and finishes the model. `listener` may be null. Throws core::Error
-  /// (bad_input) when nothing was posed or seen.
+  /// Fits every frame and finishes the model. `listener` may be null. Notes what the data show to
+  /// be wrong with the recording, while it is being made as soon as that is seen. Throws
+  /// core::Error (bad_input) when nothing was posed or seen.
   void run(ProgressSink& sink, FrameListener* listener = nullptr);
 
   [[nodiscard]] const capture::Session& session() const;
@@ -70,6 +73,8 @@ class Reconstruction {
   /// Mean colours of the same samples; null unless options.with_mean or they are what is fitted.
   [[nodiscard]] const fitting::LightField* mean_colours() const;
   [[nodiscard]] const FrameStatistics& frames() const;
+  /// What `run` found to be wrong with the recording.
+  [[nodiscard]] const std::vector<Finding>& findings() const;
   [[nodiscard]] const core::StageTimer& times() const;
   [[nodiscard]] double finish_cpu_ms() const;  ///< CPU time of what the fit put off to the end
   [[nodiscard]] const std::optional<capture::BoardRefinement>& board_refinement() const;

@@ -90,6 +90,7 @@ ReplayReport describe(const ReplayOptions& options, const Reconstruction& fitted
                       .held_out = {},
                       .held_out_mean = {},
                       .held_out_refined_poses = {},
+                      .findings = fitted.findings(),
                       .options = std::move(settings)};
   if (const auto* const patches = fitting::as_patches(light_field)) {
     report.patches = patches->patch_count();
