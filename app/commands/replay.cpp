@@ -8,7 +8,7 @@
 #include "app/terminal_sink.h"
 #include "capture/pose/trajectory.h"
 #include "capture/source/paced_source.h"
-#include "core/mesh/ply_file.h"
+#include "core/mesh/placed_ply.h"
 #include "core/visibility/ray_visibility.h"
 #include "evaluation/views/evaluate_views.h"
 #include "fitting/model_file/model_file.h"
@@ -73,7 +73,7 @@ void save(const ReplayOptions& options, const Reconstruction& fitted) {
                          fitted.frames().seen);
   }
   if (!options.mesh_output.empty()) {
-    core::write_ply(options.mesh_output, fitted.mesh_refinement()->mesh);
+    core::write_placed_ply(options.mesh_output, fitted.mesh_refinement()->mesh);
   }
   if (!options.poses_output.empty()) write_poses(options.poses_output, fitted.frames().posed);
 }

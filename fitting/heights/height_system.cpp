@@ -2,6 +2,7 @@
 #include "fitting/heights/height_system.h"
 
 #include "core/concurrency/parallel_for.h"
+#include "fitting/heights/local_sums.h"
 
 #include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCore>
@@ -25,13 +26,26 @@ constexpr double kSmallest = 1e-4;  ///< residual of the linear system, relative
 HeightSystem::HeightSystem(const HeightField& field, const core::Mesh& mesh,
                            std::span<const TrianglePlane> planes,
                            const detail::SurfaceTexels& surface, const core::Atlas& atlas,
-                           std::span<const TexelStatistics> texels, int threads)
-    : field_(field), mesh_(mesh), equations_(mesh.triangles.size()) {
-  core::parallel_for(equations_.size(), threads, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      equations_[t] = equations_of(t, planes, surface, atlas, texels);
-    }
-  });
+                           std::span<const TexelStatistics> texels, int edges, int threads)
+    : field_(field),
+      mesh_(mesh),
+      planes_(planes),
+      surface_(surface),
+      atlas_(atlas),
+      texels_(texels),
+      equations_(mesh.triangles.size()) {
+  std::vector<GradientSums> gradients(equations_.size());
+  const auto for_triangles = [&](const auto& body) {
+    core::parallel_for(equations_.size(), threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t t = begin; t < end; ++t) body(t);
+    });
+  };
+  for_triangles([&](std::size_t t) { gradients[t] = gradients_of(t); });
+  std::vector<GradientSums> around = sums_around(field, mesh, gradients, edges);
+  for (GradientSums& sums : around) {
+    if (sums[9] > 0.0f) sums /= sums[9];
+  }
+  for_triangles([&](std::size_t t) { equations_[t] = equations_of(t, around); });
   double scatter = 0;
   double weight = 0;
   for (const TriangleEquations& triangle : equations_) {
@@ -42,29 +56,58 @@ HeightSystem::HeightSystem(const HeightField& field, const core::Mesh& mesh,
   variance_ = kAlike * (weight > 0 ? std::max(least, scatter / weight) : least);
 }
 
+HeightSystem::GradientSums HeightSystem::gradients_of(std::size_t triangle_idx) const {
+  GradientSums sums = GradientSums::Zero();
+  const TrianglePlane& plane = planes_[triangle_idx];
+  if (plane.normal.isZero(0)) return sums;
+  for (const detail::SurfaceTexel& texel : surface_.of(triangle_idx)) {
+    const float weight = texels_[texel.texel_idx].weight;
+    if (!(weight > 0.0f)) continue;
+    const auto gradient = mean_gradient(texels_, atlas_, texel.texel_idx);
+    for (int channel = 0; channel < 3; ++channel) {
+      sums.segment<3>(3 * channel) += weight * plane.atlas_from_object.transpose() *
+                                      gradient[static_cast<std::size_t>(channel)];
+    }
+    sums[9] += weight;
+  }
+  return sums;
+}
+
 HeightSystem::TriangleEquations HeightSystem::equations_of(
-    std::size_t triangle_idx, std::span<const TrianglePlane> planes,
-    const detail::SurfaceTexels& surface, const core::Atlas& atlas,
-    std::span<const TexelStatistics> texels) const {
+    std::size_t triangle_idx, std::span<const GradientSums> around) const {
   TriangleEquations sums;
-  const Eigen::Vector3f& normal = planes[triangle_idx].normal;
-  if (normal.isZero(0)) return sums;
+  const TrianglePlane& plane = planes_[triangle_idx];
+  if (plane.normal.isZero(0)) return sums;
+  // The neighbourhoods' gradients on the atlas, at the corners.
+  std::array<std::array<Eigen::Vector2f, 3>, 3> mean;
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    const std::uint32_t vertex = mesh_.triangles[triangle_idx][static_cast<int>(corner)];
+    const GradientSums& local = around[field_.of_vertex(vertex)];
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      mean[corner][channel] = plane.object_from_atlas.transpose() *
+                              local.segment<3>(static_cast<Eigen::Index>(3 * channel));
+    }
+  }
   std::array<float, 3> rise{};
   for (std::size_t corner = 0; corner < 3; ++corner) {
     const std::uint32_t vertex = mesh_.triangles[triangle_idx][static_cast<int>(corner)];
-    rise[corner] = field_.directions()[field_.of_vertex(vertex)].dot(normal);
+    rise[corner] = field_.directions()[field_.of_vertex(vertex)].dot(plane.normal);
   }
-  for (const detail::SurfaceTexel& texel : surface.of(triangle_idx)) {
-    const TexelStatistics& known = texels[texel.texel_idx];
+  for (const detail::SurfaceTexel& texel : surface_.of(triangle_idx)) {
+    const TexelStatistics& known = texels_[texel.texel_idx];
     if (!(known.weight > 0.0f)) continue;
-    const HeightEquation equation =
-        height_equation(known, mean_gradient(texels, atlas, texel.texel_idx));
+    const float at_first = 1.0f - texel.at_second - texel.at_third;
+    auto gradient = mean_gradient(texels_, atlas_, texel.texel_idx);
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      gradient[channel] -= at_first * mean[0][channel] + texel.at_second * mean[1][channel] +
+                           texel.at_third * mean[2][channel];
+    }
+    const HeightEquation equation = height_equation(known, gradient);
     sums.scatter += static_cast<double>(known.scatter());
     sums.weight += 3 * static_cast<double>(known.weight);
-    const std::array<double, 3> part{
-        static_cast<double>((1.0f - texel.at_second - texel.at_third) * rise[0]),
-        static_cast<double>(texel.at_second * rise[1]),
-        static_cast<double>(texel.at_third * rise[2])};
+    const std::array<double, 3> part{static_cast<double>(at_first * rise[0]),
+                                     static_cast<double>(texel.at_second * rise[1]),
+                                     static_cast<double>(texel.at_third * rise[2])};
     for (std::size_t i = 0; i < 3; ++i) {
       sums.matrix[i] += static_cast<double>(equation.a) * part[i] * part[i];
       sums.matrix[3 + i] += static_cast<double>(equation.a) * part[i] * part[(i + 1) % 3];

@@ -24,13 +24,17 @@ namespace sheen::fitting::heights {
 ///       + sum_edges ((h_i + s_i - h_j - s_j) / (slope length))^2 + sum_i outline_i (h_i + s_i)^2
 ///
 /// over texels x at barycentric weights b, e the difference of what a view shows to the mean, k_i
-/// the cosine between a height's direction and its triangle's normal.
+/// the cosine between a height's direction and its triangle's normal, g the gradient of the mean
+/// picture less its own mean over the neighbourhood: gloss that brightens the neighbourhood in a
+/// view, with which a gradient all over it could be confused, cancels out.
 class HeightSystem {
  public:
-  /// `planes` and `texels` are those of the mesh as `field` raises it now.
+  /// `planes` and `texels` are those of the mesh as `field` raises it now; neighbourhoods reach
+  /// over `edges` (local_sums.h).
   HeightSystem(const HeightField& field, const core::Mesh& mesh,
                std::span<const TrianglePlane> planes, const detail::SurfaceTexels& surface,
-               const core::Atlas& atlas, std::span<const TexelStatistics> texels, int threads);
+               const core::Atlas& atlas, std::span<const TexelStatistics> texels, int edges,
+               int threads);
 
   /// 1 for every height that some view says something about.
   [[nodiscard]] std::vector<std::uint8_t> seen() const;
@@ -47,14 +51,19 @@ class HeightSystem {
     double scatter = 0, weight = 0;
   };
 
+  /// Weighted sums of the gradient, object frame, 1 / m, a column per channel; weight last.
+  using GradientSums = Eigen::Matrix<float, 10, 1>;
+
+  [[nodiscard]] GradientSums gradients_of(std::size_t triangle_idx) const;
   [[nodiscard]] TriangleEquations equations_of(std::size_t triangle_idx,
-                                               std::span<const TrianglePlane> planes,
-                                               const detail::SurfaceTexels& surface,
-                                               const core::Atlas& atlas,
-                                               std::span<const TexelStatistics> texels) const;
+                                               std::span<const GradientSums> around) const;
 
   const HeightField& field_;
   const core::Mesh& mesh_;
+  std::span<const TrianglePlane> planes_;
+  const detail::SurfaceTexels& surface_;
+  const core::Atlas& atlas_;
+  std::span<const TexelStatistics> texels_;
   std::vector<TriangleEquations> equations_;
   double variance_ = 0;
 };

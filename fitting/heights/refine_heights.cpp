@@ -4,8 +4,10 @@
 #include "core/numerics/median.h"
 #include "fitting/heights/height_field.h"
 #include "fitting/heights/height_system.h"
+#include "fitting/heights/local_sums.h"
 #include "fitting/heights/texel_statistics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -30,6 +32,7 @@ class Refinement {
         atlas_(core::make_atlas(mesh, texel_m, kMostTexels)),
         surface_(atlas_),
         field_(mesh),
+        edges_(neighbourhood_edges(field_, static_cast<double>(texel_m))),
         outline_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(field_.size()))) {}
 
   HeightRefinement run();
@@ -48,6 +51,7 @@ class Refinement {
   core::Atlas atlas_;
   detail::SurfaceTexels surface_;
   HeightField field_;
+  int edges_;                ///< that a neighbourhood reaches over
   Eigen::VectorXd outline_;  ///< of every height: what keeps outlines, 1 / m^2
   std::vector<TexelStatistics> texels_;
   int looked_at_ = 0;
@@ -84,32 +88,36 @@ void Refinement::note_outline(const SeenTexels& seen, const PosedImage& view) {
   }
 }
 
+/// Of the check views to the mean picture, less what changes over a whole neighbourhood of a view:
+/// that is gloss, and no matter of heights.
 double Refinement::residual(SeenTexels& seen) {
-  struct Sum {
-    double square = 0, weight = 0;
-  };
-  std::vector<Sum> sums(mesh_.triangles.size());
+  using Sums = Eigen::Matrix<double, 5, 1>;  // weight, differences (RGB), their squares
+  std::vector<Sums> triangles(mesh_.triangles.size());
+  double square = 0;
+  double weight = 0;
   for (const PosedImage& view : check_views_) {
     tell_progress();
     seen.set_view(view);
+    std::ranges::fill(triangles, Sums::Zero());
     seen.for_each([&](std::size_t triangle, const SeenTexel& texel) {
       const TexelStatistics& known = texels_[texel.texel_idx];
       if (!(known.weight > 0.0f)) return;
-      float square = 0;
+      const auto q = static_cast<double>(texel.weight);
+      Sums& sums = triangles[triangle];
+      sums[0] += q;
       for (std::size_t channel = 0; channel < 3; ++channel) {
-        const float off = texel.rgb[channel] - 128.0f - known.mean(channel);
-        square += off * off;
+        const auto off = static_cast<double>(texel.rgb[channel] - 128.0f - known.mean(channel));
+        sums[static_cast<Eigen::Index>(1 + channel)] += q * off;
+        sums[4] += q * off * off;
       }
-      sums[triangle].square += static_cast<double>(texel.weight * square);
-      sums[triangle].weight += 3 * static_cast<double>(texel.weight);
     });
+    for (const Sums& sums : sums_around(field_, mesh_, triangles, edges_)) {
+      if (!(sums[0] > 0)) continue;
+      square += std::max(0.0, sums[4] - sums.segment<3>(1).squaredNorm() / sums[0]);
+      weight += 3 * sums[0];
+    }
   }
-  Sum all;
-  for (const Sum& sum : sums) {
-    all.square += sum.square;
-    all.weight += sum.weight;
-  }
-  return all.weight > 0 ? all.square / all.weight : 0;
+  return weight > 0 ? square / weight : 0;
 }
 
 HeightRefinement Refinement::run() {
@@ -122,7 +130,8 @@ HeightRefinement Refinement::run() {
     if (pass == 0) result.residual_before = residual(seen);
     if (pass == kPasses) result.residual_after = residual(seen);
     if (pass == kPasses) break;
-    const HeightSystem system(field_, raised, seen.planes(), surface_, atlas_, texels_, threads_);
+    const HeightSystem system(field_, raised, seen.planes(), surface_, atlas_, texels_, edges_,
+                              threads_);
     if (pass == 0) is_seen = system.seen();
     field_.heights() += system.step(outline_, texel_m_);
     raised = field_.raised();

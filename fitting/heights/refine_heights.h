@@ -16,7 +16,8 @@ struct HeightRefinement {
   bool is_accepted = false;
   core::Mesh mesh;  ///< refined where accepted, else as given
   /// Mean squared difference of the check views to the mean picture of the others, over channels,
-  /// steps of 255; 0 where no check view shows anything that they show.
+  /// steps of 255, less what it is over a whole neighbourhood of a view (gloss); 0 where no check
+  /// view shows anything that they show.
   double residual_before = 0, residual_after = 0;
   double median_m = 0;  ///< of the heights' magnitudes, over the positions that were seen
 

@@ -20,8 +20,13 @@ TrianglePlane plane_of(const core::Mesh& mesh, const core::Atlas& atlas, std::si
   const double determinant = squared.determinant();
   const Eigen::Vector3f across = edges.col(0).cross(edges.col(1));
   const float area = across.norm();
-  if (!(determinant > 1e-6 * squared.trace() * squared.trace()) || !(area > 0.0f)) return {};
-  return {across / area, on_atlas * squared.inverse().cast<float>() * edges.transpose()};
+  const float on_atlas_area = std::abs(on_atlas.determinant());
+  if (!(determinant > 1e-6 * squared.trace() * squared.trace()) || !(area > 0.0f) ||
+      !(on_atlas_area > 1e-6f)) {
+    return {};
+  }
+  return {across / area, on_atlas * squared.inverse().cast<float>() * edges.transpose(),
+          edges * on_atlas.inverse()};
 }
 
 }  // namespace

@@ -41,6 +41,8 @@ struct TrianglePlane {
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit; zero without area
   /// What a metre along the surface is on the atlas, texels.
   Eigen::Matrix<float, 2, 3> atlas_from_object = Eigen::Matrix<float, 2, 3>::Zero();
+  /// What a texel along the atlas is on the surface, metres.
+  Eigen::Matrix<float, 3, 2> object_from_atlas = Eigen::Matrix<float, 3, 2>::Zero();
 };
 
 /// Looks at the texels of a mesh in one view after the other.

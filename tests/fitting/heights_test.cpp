@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Heights of vertices from pictures of a print, on surfaces whose true shape is known.
+#include "core/mesh/placed_ply.h"
+#include "core/mesh/read_mesh.h"
 #include "fitting/heights/height_field.h"
 #include "fitting/heights/refine_heights.h"
 #include "pipeline/mesh_heights.h"
 #include "tests/fitting/photographs_for_tests.h"
+#include "tests/support/temporary_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -235,6 +238,22 @@ TEST(Heights, WhatIsNotSeenStays) {
   }
 }
 
+// What is written lies where the mesh's file lay: reading it again gives the same mesh, here in
+// coordinates of a survey, which single precision could not hold.
+TEST(Heights, AMeshIsWrittenWhereItsFileLay) {
+  const tests::TemporaryFolder folder;
+  core::Mesh mesh = with_hill(square(4));
+  mesh.offset = {5.4e6, -3.1e5, 250.0};
+  core::write_placed_ply(folder / "a.ply", mesh);
+  const core::Mesh read = core::read_mesh(folder / "a.ply");
+  EXPECT_FALSE(read.offset.isZero());
+  ASSERT_EQ(read.positions.size(), mesh.positions.size());
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const Eigen::Vector3d there = mesh.positions[i].cast<double>() + mesh.offset;
+    EXPECT_LT((read.positions[i].cast<double>() + read.offset - there).norm(), 1e-7);
+  }
+}
+
 /// Photographs as the frames of a recording; those held out are noise where asked for.
 class Recording final : public capture::FrameSource {
  public:
@@ -246,7 +265,10 @@ class Recording final : public capture::FrameSource {
     const auto index = static_cast<int>(next_++);
     cv::Mat image = views_[static_cast<std::size_t>(index)].image;
     if (noisy_every_ > 0 && index % noisy_every_ == noisy_every_ / 2) image = 255 - image;
-    return capture::Frame{.image = image, .index = index};
+    capture::Frame frame;
+    frame.image = image;
+    frame.index = index;
+    return frame;
   }
   [[nodiscard]] std::optional<int> frame_count() const override {
     return static_cast<int>(views_.size());
@@ -272,11 +294,14 @@ class KnownPoses final : public capture::PoseEstimator {
 
 pipeline::MeshRefinement refine_recording(const std::vector<PosedImage>& views, int hold_out,
                                           int noisy_every) {
-  const capture::Session session{.camera = printed_hill().camera()};
+  capture::Session session;
+  session.camera = printed_hill().camera();
   pipeline::PoseStage poses(std::make_unique<Recording>(views, noisy_every),
                             std::make_unique<KnownPoses>(views));
+  pipeline::FrameChoice choice;
+  choice.hold_out = hold_out;
   pipeline::ProgressSink sink;
-  return pipeline::refine_mesh_heights(session, square(32), {.hold_out = hold_out}, poses, 1, sink);
+  return pipeline::refine_mesh_heights(session, square(32), choice, poses, 1, sink);
 }
 
 // Held-out frames have no part: with them turned into their negatives not a bit changes. That they
