@@ -71,6 +71,24 @@ nlohmann::ordered_json board_json(const std::optional<capture::BoardRefinement>&
           {"median_shift_mm", 1000 * board->median_shift_m}};
 }
 
+nlohmann::ordered_json mesh_json(const std::optional<pipeline::MeshRefinement>& mesh) {
+  if (!mesh) return nullptr;
+  return {{"accepted", mesh->is_accepted},
+          {"median_mm", mesh->median_mm},
+          {"residual_change", mesh->residual_change},
+          {"views", mesh->views},
+          {"check_views", mesh->check_views}};
+}
+
+std::string mesh_text(const pipeline::MeshRefinement& mesh) {
+  if (mesh.is_accepted) {
+    return fmt::format("mesh     refined: median {:.2g} mm, residual on check views {:+.1f} %\n",
+                       mesh.median_mm, 100 * mesh.residual_change);
+  }
+  return fmt::format("mesh     kept: residual on check views would change by {:+.1f} %\n",
+                     100 * mesh.residual_change);
+}
+
 std::string held_out_row(const std::string& name, const evaluation::EvaluationSummary& summary) {
   return fmt::format("  {:<22}{:>8.2f} dB{:>8.4f}{:>9.4f}\n", name, summary.mean.psnr_db,
                      summary.mean.ssim, summary.mean.rmse);
@@ -151,6 +169,7 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
           {"pose_refinement",
            {{"refined", frames.refined_px.size()}, {"motion_px", median_of(frames.refined_px)}}},
           {"board_refinement", board_json(report.board)},
+          {"mesh_refinement", mesh_json(report.mesh)},
           {"exposure", exposure_json(frames.gains)},
           {"reprojection_px", frames.reprojection_px.empty()
                                   ? nlohmann::ordered_json(nullptr)
@@ -163,6 +182,7 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
 
 std::string to_text(const ReplayReport& report) {
   std::string text = frames_text(report.frames);
+  if (report.mesh) text += mesh_text(*report.mesh);
   text += fmt::format("model    {}: {} patches ({} seen), {:.0f} numbers each, {:.2f} MB\n",
                       report.representation, report.patches, report.patches_observed,
                       per_patch(report), static_cast<double>(report.model_bytes) / 1e6);

@@ -7,6 +7,7 @@
 #include "fitting/fitter.h"
 #include "pipeline/evidence/finding.h"
 #include "pipeline/frame_statistics.h"
+#include "pipeline/mesh_heights.h"
 
 #include <nlohmann/json.hpp>
 
@@ -29,6 +30,7 @@ struct ReplayReport {
   std::size_t coefficients = 0;
   std::size_t model_bytes = 0;
   std::optional<capture::BoardRefinement> board;          ///< where the tags were refined
+  std::optional<pipeline::MeshRefinement> mesh;           ///< where it was to be refined
   std::optional<evaluation::EvaluationSummary> held_out;  ///< of the fitted representation
   std::optional<evaluation::EvaluationSummary>
       held_out_mean;  ///< of the mean colours, on the same views

@@ -51,6 +51,7 @@ struct Reconstruction::Impl {
   Impl(ReconstructionInputs inputs, const ReconstructionOptions& wanted, ProgressSink& sink);
 
   core::Mesh read_mesh(ProgressSink& sink);
+  std::optional<MeshRefinement> refine_mesh(ProgressSink& sink) const;
   core::Mesh patch_mesh();
   void look_at_sides(const TrackedFrame& tracked, ProgressSink& sink);
   double texel_size_m() const;
@@ -69,6 +70,7 @@ struct Reconstruction::Impl {
   std::optional<capture::BoardRefinement> board;
   core::Mesh object_mesh;
   SessionScene scene;
+  std::optional<MeshRefinement> refinement;
   core::Mesh mesh;
   std::vector<Eigen::Isometry3d> first_poses;  ///< of a live recording: which side do they see
   std::unique_ptr<ViewObserver> observer;
@@ -98,6 +100,7 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
       board(refine_board(session, options, sink)),
       object_mesh(read_mesh(sink)),
       scene(session, object_mesh, options.frames.pose_source, sink),
+      refinement(refine_mesh(sink)),
       mesh(patch_mesh()),
       observer(std::make_unique<ViewObserver>(
           mesh, make_visibility(inputs.make_visibility, mesh, options.threads), options.limits,
@@ -149,12 +152,21 @@ core::Mesh Reconstruction::Impl::read_mesh(ProgressSink& sink) {
   return read;
 }
 
-/// Refined to the images' resolution when patches are texels.
+/// Reads the recording once for it, before the run.
+std::optional<MeshRefinement> Reconstruction::Impl::refine_mesh(ProgressSink& sink) const {
+  if (!options.refine_mesh || is_live) return std::nullopt;
+  PoseStage stills(capture::open_frames(session, options.frames.start, options.frames.end),
+                   pose_estimator());
+  return refine_mesh_heights(session, object_mesh, options.frames, stills, options.threads, sink);
+}
+
+/// Subdivided to the images' resolution when patches are texels.
 core::Mesh Reconstruction::Impl::patch_mesh() {
-  if (options.patches != Patches::texel) return object_mesh;
-  const auto footprint_m = pixel_footprint_m(session, object_mesh, *pose_estimator());
-  if (!footprint_m) return object_mesh;  // the run itself will say why no frame is posed
-  return texel_mesh(object_mesh, *footprint_m, options.texel_px);
+  const core::Mesh& surface = refinement ? refinement->mesh : object_mesh;
+  if (options.patches != Patches::texel) return surface;
+  const auto footprint_m = pixel_footprint_m(session, surface, *pose_estimator());
+  if (!footprint_m) return surface;  // the run itself will say why no frame is posed
+  return texel_mesh(surface, *footprint_m, options.texel_px);
 }
 
 /// While a recording is made its mesh is fitted already; that it is inside out can be said only.
@@ -317,6 +329,10 @@ double Reconstruction::finish_cpu_ms() const {
 
 const std::optional<capture::BoardRefinement>& Reconstruction::board_refinement() const {
   return impl_->board;
+}
+
+const std::optional<MeshRefinement>& Reconstruction::mesh_refinement() const {
+  return impl_->refinement;
 }
 
 PosedFrame Reconstruction::refined(const capture::Frame& frame, const PosedFrame& posed) {

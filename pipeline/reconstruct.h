@@ -11,6 +11,7 @@
 #include "pipeline/evidence/finding.h"
 #include "pipeline/fit_stage.h"
 #include "pipeline/frame_statistics.h"
+#include "pipeline/mesh_heights.h"
 #include "pipeline/options.h"
 #include "pipeline/pose_stage.h"
 #include "pipeline/progress_sink.h"
@@ -46,9 +47,9 @@ class FrameListener {
 /// somebody may look at the model while it grows.
 class Reconstruction {
  public:
-  /// Opens all that may be wrong: mesh, poses, settings. Reads part of the recording where texels
-  /// or a refined board ask for it. Throws core::Error, or std::invalid_argument for
-  /// settings that the representation refuses.
+  /// Opens all that may be wrong: mesh, poses, settings. Reads the recording, or part of it, where
+  /// texels, a refined board or a refined mesh ask for it. Throws core::Error, or
+  /// std::invalid_argument for settings that the representation refuses.
   Reconstruction(ReconstructionInputs inputs, const ReconstructionOptions& options,
                  ProgressSink& sink);
   ~Reconstruction();
@@ -63,9 +64,10 @@ class Reconstruction {
   void run(ProgressSink& sink, FrameListener* listener = nullptr);
 
   [[nodiscard]] const capture::Session& session() const;
-  /// The surface that the light field lies on: the session's mesh, subdivided for texel patches.
+  /// The surface that the light field lies on: the session's mesh, refined where that was asked for
+  /// and accepted, subdivided for texel patches.
   [[nodiscard]] const core::Mesh& mesh() const;
-  /// The session's mesh as it is seen, before any subdivision.
+  /// The session's mesh as it is seen, before any refinement or subdivision.
   [[nodiscard]] const core::Mesh& object_mesh() const;
   [[nodiscard]] const ReconstructionOptions& options() const;
   [[nodiscard]] const fitting::LightField& light_field() const;
@@ -78,6 +80,8 @@ class Reconstruction {
   [[nodiscard]] const core::StageTimer& times() const;
   [[nodiscard]] double finish_cpu_ms() const;  ///< CPU time of what the fit put off to the end
   [[nodiscard]] const std::optional<capture::BoardRefinement>& board_refinement() const;
+  /// Nothing unless options.refine_mesh.
+  [[nodiscard]] const std::optional<MeshRefinement>& mesh_refinement() const;
 
   /// A held-out frame's pose refined against the finished model; with `refine_poses` only.
   PosedFrame refined(const capture::Frame& frame, const PosedFrame& posed);

@@ -8,6 +8,7 @@
 #include "app/terminal_sink.h"
 #include "capture/pose/trajectory.h"
 #include "capture/source/paced_source.h"
+#include "core/mesh/placed_ply.h"
 #include "core/visibility/ray_visibility.h"
 #include "evaluation/views/evaluate_views.h"
 #include "fitting/model_file/model_file.h"
@@ -71,6 +72,9 @@ void save(const ReplayOptions& options, const Reconstruction& fitted) {
     fitting::write_model(options.mean_output, fitted.mesh(), *fitted.mean_colours(),
                          fitted.frames().seen);
   }
+  if (!options.mesh_output.empty()) {
+    core::write_placed_ply(options.mesh_output, fitted.mesh_refinement()->mesh);
+  }
   if (!options.poses_output.empty()) write_poses(options.poses_output, fitted.frames().posed);
 }
 
@@ -87,6 +91,7 @@ ReplayReport describe(const ReplayOptions& options, const Reconstruction& fitted
                       .coefficients = light_field.coefficient_count(),
                       .model_bytes = std::filesystem::file_size(options.output),
                       .board = fitted.board_refinement(),
+                      .mesh = fitted.mesh_refinement(),
                       .held_out = {},
                       .held_out_mean = {},
                       .held_out_refined_poses = {},
@@ -177,7 +182,8 @@ pipeline::ReconstructionOptions completed(const ReplayOptions& options,
 
 void run_replay(const ReplayOptions& options, const CommandContext& context) {
   // Open everything that may be wrong before the long work.
-  context.check_outputs({options.output, options.mean_output, options.poses_output});
+  context.check_outputs(
+      {options.output, options.mean_output, options.mesh_output, options.poses_output});
   if (options.preview) check_display();
   const capture::Session session = capture::open_session(options.session);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
