@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "fitting/depth_quads/descriptor.h"
 #include "fitting/descriptor.h"
 #include "fitting/detail/descriptor.h"
 #include "fitting/iwls/descriptor.h"
@@ -16,9 +17,10 @@ namespace {
 /// One line per representation; the first is the default.
 std::vector<const Descriptor*>& registry() {
   static std::vector<const Descriptor*> all{
-      &sparse::kDescriptor, &detail::kDescriptor,
-      &iwls::kDescriptor,   &spherical_harmonics::kDescriptor,
-      &mean::kDescriptor,   &nearest_views::kDescriptor,
+      &sparse::kDescriptor,      &detail::kDescriptor,
+      &iwls::kDescriptor,        &spherical_harmonics::kDescriptor,
+      &mean::kDescriptor,        &nearest_views::kDescriptor,
+      &depth_quads::kDescriptor,
   };
   return all;
 }
