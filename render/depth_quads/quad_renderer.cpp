@@ -130,7 +130,8 @@ Eigen::Vector3f colour_at(const DecodedPhotograph& photograph, const ScreenQuad&
 
 void QuadRenderer::find_nearest(const Sheet& sheet) {
   for_each_pixel(sheet, inverse_depth_.rows,
-                 [&](const ScreenQuad&, int x, int y, float, float, float inverse_depth) {
+                 [&](const ScreenQuad& quad, int x, int y, float, float, float inverse_depth) {
+                   if (quad.is_flier) return;
                    auto& nearest = inverse_depth_.at<float>(y, x);
                    nearest = std::max(nearest, inverse_depth);
                  });
@@ -165,7 +166,9 @@ void QuadRenderer::add_near(const Sheet& sheet, cv::Mat& sums) {
                  });
 }
 
-void divide(const cv::Mat& sums, cv::Mat& image) {
+/// Gives the mask of what has a colour.
+cv::Mat divide(const cv::Mat& sums, cv::Mat& image) {
+  cv::Mat mask(image.size(), CV_8UC1, cv::Scalar(0));
   for (int y = 0; y < image.rows; ++y) {
     for (int x = 0; x < image.cols; ++x) {
       const auto& sum = sums.at<cv::Vec4f>(y, x);
@@ -173,8 +176,10 @@ void divide(const cv::Mat& sums, cv::Mat& image) {
       for (int c = 0; c < 3; ++c) {
         image.at<cv::Vec3b>(y, x)[c] = static_cast<std::uint8_t>(std::lround(sum[c] / sum[3]));
       }
+      mask.at<std::uint8_t>(y, x) = 255;
     }
   }
+  return mask;
 }
 
 RenderedView QuadRenderer::render(const core::CameraModel& camera,
@@ -183,17 +188,18 @@ RenderedView QuadRenderer::render(const core::CameraModel& camera,
   rays_.set_camera(camera);
   const std::vector<Sheet> sheets = sheets_for({camera, camera_from_object});
   cv::Mat image(size, CV_8UC3, cv::Scalar::all(0));
+  cv::Mat mask;
   inverse_depth_.create(size, CV_32FC1);
   inverse_depth_.setTo(0);
   if (quads_.options().blending == Blending::hard) {
     for (const Sheet& sheet : sheets) paint_nearest(sheet, image);
+    mask = inverse_depth_ > 0.0f;
   } else {
     for (const Sheet& sheet : sheets) find_nearest(sheet);
     cv::Mat sums(size, CV_32FC4, cv::Scalar::all(0));
     for (const Sheet& sheet : sheets) add_near(sheet, sums);
-    divide(sums, image);
+    mask = divide(sums, image);
   }
-  const cv::Mat mask = inverse_depth_ > 0.0f;
   return {image, mask, mask.clone()};
 }
 

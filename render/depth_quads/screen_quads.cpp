@@ -24,6 +24,8 @@ constexpr float kToleranceSides = 2.0f;
 constexpr double kLeastAngle = 0.01;
 /// Of quads in which two surfaces may be mixed.
 constexpr float kMixedWeight = 0.02f;
+/// Of quads that stand alone in depth: what they show counts where there is nothing else.
+constexpr float kFlierWeight = 1e-4f;
 
 /// What all quads of a photograph share.
 struct Sheet {
@@ -44,18 +46,24 @@ std::size_t cell_idx(const QuadLevel& level, int i, int j) {
          static_cast<std::size_t>(i);
 }
 
-/// Whether a neighbour of the cell is missing or stands at another depth.
-bool is_mixed(const Sheet& sheet, int i, int j, float depth_m, float tolerance) {
+/// How much a quad's colour counts for what stands around it: all where every neighbour goes on at
+/// its depth, little beside a hole or a jump, hardly where no neighbour does: a flier.
+float certainty(const Sheet& sheet, int i, int j, float depth_m, float tolerance) {
   const QuadLevel& level = sheet.level;
+  int present = 0;
+  int continuing = 0;
   for (const auto& [di, dj] : {std::array{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
     const int x = i + di;
     const int y = j + dj;
-    if (x < 0 || y < 0 || x >= level.columns || y >= level.rows) return true;
+    if (x < 0 || y < 0 || x >= level.columns || y >= level.rows) continue;
     const std::uint16_t code = sheet.codes[cell_idx(level, x, y)];
-    if (code == 0) return true;
-    if (std::abs(sheet.quads.depths.depth_m(code) - depth_m) > tolerance * depth_m) return true;
+    if (code == 0) continue;
+    ++present;
+    const float difference_m = std::abs(sheet.quads.depths.depth_m(code) - depth_m);
+    if (difference_m <= tolerance * depth_m) ++continuing;
   }
-  return false;
+  if (present > 0 && continuing == 0) return kFlierWeight;
+  return continuing == 4 ? 1.0f : kMixedWeight;
 }
 
 /// The pixels between four corners in the viewer's frame; nothing when one has no pixel.
@@ -129,10 +137,9 @@ std::optional<ScreenQuad> screen_quad(const Sheet& sheet, int i, int j) {
   const Eigen::Vector3d middle = depth_m * ((a + b + c + d) / 4).homogeneous();
   const double angle2 =
       (-middle.normalized() - (sheet.viewer_eye - middle).normalized()).squaredNorm();
-  quad.weight = static_cast<float>(1 / (angle2 + kLeastAngle * kLeastAngle));
-  if (is_mixed(sheet, i, j, static_cast<float>(depth_m), quad.tolerance)) {
-    quad.weight *= kMixedWeight;
-  }
+  const float certain = certainty(sheet, i, j, static_cast<float>(depth_m), quad.tolerance);
+  quad.weight = certain * static_cast<float>(1 / (angle2 + kLeastAngle * kLeastAngle));
+  quad.is_flier = certain == kFlierWeight;
   return quad;
 }
 

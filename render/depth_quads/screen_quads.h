@@ -24,6 +24,7 @@ struct ScreenQuad {
   float side_px;                 ///< of the quad in its photograph
   float tolerance;               ///< depths within this part of another are the same surface's
   float weight;                  ///< of its colour among others
+  bool is_flier;                 ///< stands alone in depth: not to be trusted to hide anything
   int left, top, right, bottom;  ///< pixels that may see it, inclusive
 };
 
@@ -44,7 +45,7 @@ std::size_t choose_level(const fitting::KeptView& photograph,
 
 /// Quads of one level of a photograph that a view may see: those in front of it, wholly within its
 /// lens model and turned towards it. Weights fall with the angle between photograph and view, and
-/// beside holes and jumps of depth, where pixels mix two surfaces.
+/// beside holes and jumps of depth, where pixels mix two surfaces, and most for fliers.
 std::vector<ScreenQuad> screen_quads(const fitting::KeptView& photograph,
                                      const fitting::depth_quads::QuadView& quads,
                                      std::size_t level_idx,
