@@ -7,6 +7,7 @@
 #include "fitting/nearest_views/descriptor.h"
 #include "fitting/sparse/descriptor.h"
 #include "fitting/spherical_harmonics/descriptor.h"
+#include "fitting/view_dependent_texture/descriptor.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -20,7 +21,7 @@ std::vector<const Descriptor*>& registry() {
       &sparse::kDescriptor,      &detail::kDescriptor,
       &iwls::kDescriptor,        &spherical_harmonics::kDescriptor,
       &mean::kDescriptor,        &nearest_views::kDescriptor,
-      &depth_quads::kDescriptor,
+      &depth_quads::kDescriptor, &view_dependent_texture::kDescriptor,
   };
   return all;
 }
