@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "reconstruction/hull/distance_grid.h"
 
+#include "core/concurrency/parallel_for.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -45,6 +47,29 @@ float DistanceGrid::value_at(const Eigen::Vector3f& point_m) const {
   };
   const float a = plane(first);
   return a + share[2] * (plane(first + layer) - a);
+}
+
+void DistanceGrid::smooth(float limit_m, int rounds, int threads) {
+  for (float& value : values_) value = std::clamp(value, -limit_m, limit_m);
+  const std::array<std::size_t, 3> stride{
+      1, static_cast<std::size_t>(size_.x()),
+      static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y())};
+  std::vector<float> blurred(values_.size());
+  for (int round = 0; round < rounds; ++round) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::size_t step = stride[static_cast<std::size_t>(axis)];
+      const auto length = static_cast<std::size_t>(size_[axis]);
+      core::parallel_for(values_.size(), threads, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const std::size_t place = i / step % length;
+          const float before = place > 0 ? values_[i - step] : values_[i];
+          const float after = place + 1 < length ? values_[i + step] : values_[i];
+          blurred[i] = 0.25F * before + 0.5F * values_[i] + 0.25F * after;
+        }
+      });
+      values_.swap(blurred);
+    }
+  }
 }
 
 Eigen::Vector3f DistanceGrid::gradient_at(const Eigen::Vector3f& point_m) const {

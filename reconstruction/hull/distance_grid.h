@@ -42,6 +42,9 @@ class DistanceGrid {
   [[nodiscard]] float& operator[](std::size_t index) { return values_[index]; }
   [[nodiscard]] float operator[](std::size_t index) const { return values_[index]; }
 
+  /// Limits every value to +-`limit_m` and blurs them (binomial, 1 2 1 along each axis) `rounds` times.
+  void smooth(float limit_m, int rounds, int threads);
+
   /// Trilinear value; outside the grid that of its nearest place.
   [[nodiscard]] float value_at(const Eigen::Vector3f& point_m) const;
   /// Trilinear value's gradient by central differences of half a cell; not normalised.

@@ -14,10 +14,11 @@
 namespace sheen::reconstruction {
 namespace {
 
-constexpr int kFewestViews = 5;
+constexpr std::size_t kFewestViews = 5;
+constexpr std::size_t kOneKnownIn = 4;  // of all views: what stands on the sheet is seen by most
 constexpr float kUnknown_px = -3000;  // below: silhouette_distance says that nothing is known
 constexpr float kOutside_m = 1;
-constexpr std::size_t kMostDisagreeing = 16;
+constexpr std::size_t kMostDisagreeing = 24;
 
 /// The k largest of the values offered, the smallest of them first to know.
 class Largest {
@@ -36,27 +37,35 @@ class Largest {
   std::array<float, kMostDisagreeing> values_{};
 };
 
-float vote(const ViewSet& views, const std::vector<cv::Mat>& distances, int disagreeing,
-           const Eigen::Vector3f& point) {
-  Largest largest(disagreeing);
-  int known = 0;
+float vote(const ViewSet& views, const std::vector<OutlineVote>& outlines,
+           const CarvingVotes& votes, const Eigen::Vector3f& point) {
+  Largest surely(votes.wrong);
+  Largest all(votes.guesses_wrong);
+  std::size_t known = 0;
   for (std::size_t v = 0; v < views.views.size(); ++v) {
     const Projection& project = views.views[v].project;
     const auto pixel = project(point);
     if (!pixel || !project.in_image(pixel, 1)) continue;
-    const float distance_px = bilinear_value(distances[v], pixel.x_px, pixel.y_px);
+    const float distance_px = bilinear_value(outlines[v].distance, pixel.x_px, pixel.y_px);
     if (distance_px < kUnknown_px) continue;
     ++known;
-    largest.offer(distance_px / project.px_per_m(pixel.depth_m));
+    const float distance_m = distance_px / project.px_per_m(pixel.depth_m);
+    all.offer(distance_m);
+    if (outlines[v].is_guessed.at<std::uint8_t>(static_cast<int>(pixel.y_px),
+                                                static_cast<int>(pixel.x_px)) == 0) {
+      surely.offer(distance_m);
+    }
   }
-  return known < std::max(kFewestViews, disagreeing) ? kOutside_m : largest.kth();
+  if (known < std::max(kFewestViews, views.views.size() / kOneKnownIn)) return kOutside_m;
+  return std::max(surely.kth(), all.kth());
 }
 
 }  // namespace
 
-void carve_hull(const ViewSet& views, const std::vector<cv::Mat>& distances, int disagreeing,
-                const DistanceGrid* coarse, float band_m, int threads, DistanceGrid& grid) {
-  assert(disagreeing >= 1 && disagreeing <= static_cast<int>(kMostDisagreeing));
+void carve_hull(const ViewSet& views, const std::vector<OutlineVote>& outlines,
+                const CarvingVotes& votes, const DistanceGrid* coarse, float band_m, int threads, DistanceGrid& grid) {
+  assert(votes.wrong >= 1 && votes.wrong <= votes.guesses_wrong &&
+         votes.guesses_wrong <= static_cast<int>(kMostDisagreeing));
   core::parallel_for(grid.count(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3f point = grid.point(i);
@@ -67,7 +76,7 @@ void carve_hull(const ViewSet& views, const std::vector<cv::Mat>& distances, int
           continue;
         }
       }
-      grid[i] = std::max(vote(views, distances, disagreeing, point), -point.z());
+      grid[i] = std::max(vote(views, outlines, votes, point), -point.z());
     }
   });
 }
@@ -126,9 +135,10 @@ Components find_components(const DistanceGrid& grid) {
   return found;
 }
 
-void keep_largest(const Components& components, DistanceGrid& grid) {
+void keep_component(const Components& components, int kept, DistanceGrid& grid) {
   for (std::size_t i = 0; i < grid.count(); ++i) {
-    if (components.of_point[i] > 0) grid[i] = grid.cell_m();
+    const int own = components.of_point[i];
+    if (own >= 0 && own != kept) grid[i] = grid.cell_m();
   }
 }
 

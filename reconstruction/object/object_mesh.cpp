@@ -13,7 +13,6 @@
 #include "reconstruction/views/depth_image.h"
 
 #include <opencv2/imgproc.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -31,6 +30,8 @@ constexpr int kCoarseCells = 72;           // along the longest side
 constexpr std::size_t kMostViews = 120;    // of the last pass
 constexpr std::size_t kStageViews = 60;    // that the stage is learned from, at full size
 constexpr int kFineCells = 160;
+constexpr float kSmoothLimit_cells = 3;
+constexpr int kSmoothRounds = 2;          // against the steps of pixels
 constexpr float kMaskGrown_px = 2;
 
 /// What was found of the object so far.
@@ -93,7 +94,7 @@ class Pass {
             for (std::size_t v = first + begin; v < first + end; ++v) {
               silhouettes_[v] =
                   cut_out(stage, views_, v, masks.empty() ? cv::Mat() : masks[v], detail);
-              if (detail == OutlineDetail::pixels) silhouettes_[v].background = {};
+              if (detail == OutlineDetail::pixels) silhouettes_[v].background.colour.release();
             }
           },
           1);
@@ -101,10 +102,13 @@ class Pass {
     }
   }
 
-  [[nodiscard]] std::vector<cv::Mat> distances() const {
-    std::vector<cv::Mat> distances;
-    for (const Silhouette& silhouette : silhouettes_) distances.push_back(silhouette.distance);
-    return distances;
+  [[nodiscard]] std::vector<OutlineVote> votes() const {
+    std::vector<OutlineVote> votes;
+    for (const Silhouette& silhouette : silhouettes_) {
+      votes.push_back({silhouette.distance, silhouette.background.source ==
+                                                static_cast<double>(TexelSource::inpainted)});
+    }
+    return votes;
   }
   [[nodiscard]] const std::vector<Silhouette>& silhouettes() const { return silhouettes_; }
 
@@ -114,9 +118,12 @@ class Pass {
   std::vector<Silhouette> silhouettes_;
 };
 
-/// So many views may be wrong about a point.
-int disagreeing(std::size_t views, std::size_t one_in) {
-  return std::clamp(static_cast<int>(views / one_in), 1, 16);
+int one_in(std::size_t share, std::size_t views) {
+  return std::clamp(static_cast<int>(views / share), 1, 24);
+}
+
+CarvingVotes votes_of(std::size_t views) {
+  return {.wrong = one_in(20, views), .guesses_wrong = one_in(6, views)};
 }
 
 /// Everything that is kept while an object is measured.
@@ -155,9 +162,9 @@ class Measurement {
       if (pass > 0) box = box.intersection(grown(shape, 0.15F));
       box.min().z() = -longest_side(box) / kCoarseCells;
       DistanceGrid next(box, longest_side(box) / kCoarseCells, 1);
-      carve_hull(views, work.distances(), disagreeing(views.views.size(), pass == 0 ? 20 : 30),
-                 nullptr, 0, threads_, next);
-      shape = pass + 1 < kCoarsePasses ? largest_of(std::move(next)) : checked(std::move(next));
+      carve_hull(views, work.votes(), votes_of(views.views.size()), nullptr, 0,
+                 threads_, next);
+      shape = pass + 1 < kCoarsePasses ? likeliest(std::move(next)) : checked(std::move(next));
     }
     return shape;
   }
@@ -174,19 +181,14 @@ class Measurement {
     Pass work(views_, threads_);
     work.cut(stage, masks, OutlineDetail::matted, progress_, "outlines, last pass");
     keep(work.silhouettes());
-    if (const char* dbg = getenv("DBG_DIR")) for (std::size_t v = 0; v < views_.views.size(); v += 12) {
-      cv::Mat a = views_.views[v].image.clone(); cv::Mat l; cv::cvtColor(labels_[v], l, cv::COLOR_GRAY2BGR);
-      cv::Mat m; cv::cvtColor(masks[v], m, cv::COLOR_GRAY2BGR);
-      cv::Mat row; cv::hconcat(std::vector<cv::Mat>{a, backgrounds_[v].colour, l, m}, row);
-      cv::imwrite(std::string(dbg) + "/v" + std::to_string(v) + ".png", row);
-    }
 
     Eigen::AlignedBox3f box = grown(coarse, 0.06F);
     const float cell = longest_side(box) / kFineCells;
     box.min().z() = -2 * cell;
     DistanceGrid grid(box, cell, 1);
-    carve_hull(views_, work.distances(), disagreeing(views_.views.size(), 30), &coarse.grid,
+    carve_hull(views_, work.votes(), votes_of(views_.views.size()), &coarse.grid,
                2.5F * coarse.grid.cell_m(), threads_, grid);
+    grid.smooth(kSmoothLimit_cells * cell, kSmoothRounds, threads_);
     return checked(std::move(grid));
   }
 
@@ -196,19 +198,26 @@ class Measurement {
     return {shape.box.min() - margin, shape.box.max() + margin};
   }
 
-  /// While the stage is half known, pieces of it may float about.
-  [[nodiscard]] Shape largest_of(DistanceGrid grid) const {
+  /// While the stage is half known, pieces of it may float about: the largest one over the tags.
+  [[nodiscard]] Shape likeliest(DistanceGrid grid) const {
     const Components components = find_components(grid);
     refuse_empty_sheet(session_, components);
-    keep_largest(components, grid);
-    return {std::move(grid), components.parts.front().box};
+    const Eigen::AlignedBox2f region = tags_region(board_);
+    std::size_t kept = 0;
+    while (kept < components.parts.size() &&
+           !region.contains(components.parts[kept].box.center().head<2>())) {
+      ++kept;
+    }
+    if (kept == components.parts.size()) kept = 0;
+    keep_component(components, static_cast<int>(kept), grid);
+    return {std::move(grid), components.parts[kept].box};
   }
 
   [[nodiscard]] Shape checked(DistanceGrid grid) const {
     const Components components = find_components(grid);
     refuse_empty_sheet(session_, components);
     refuse_what_stands_there(session_, board_, components);
-    keep_largest(components, grid);
+    keep_component(components, 0, grid);
     return {std::move(grid), components.parts.front().box};
   }
 

@@ -91,7 +91,6 @@ void refuse_empty_sheet(const std::filesystem::path& session, const Components& 
 void refuse_what_stands_there(const std::filesystem::path& session, const capture::Board& board,
                               const Components& components) {
   const auto& parts = components.parts;
-  for (std::size_t i = 0; i < std::min<std::size_t>(parts.size(), 6); ++i) fprintf(stderr, "DBG part %zu: %.3f %.3f %.3f - %.3f %.3f %.3f\n", parts[i].points, parts[i].box.min().x(), parts[i].box.min().y(), parts[i].box.min().z(), parts[i].box.max().x(), parts[i].box.max().y(), parts[i].box.max().z());
   if (parts.size() > 1 &&
       static_cast<double>(parts[1].points) > kSecondObject * static_cast<double>(parts[0].points)) {
     throw core::bad_input(session, "more than one object stands on the sheet",

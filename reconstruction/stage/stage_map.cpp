@@ -14,6 +14,7 @@ namespace sheen::reconstruction {
 namespace {
 
 constexpr std::size_t kFewestSamples = 4;
+constexpr std::size_t kOneFreeIn = 4;  // of the views of a texel: fewer may show the object after all
 constexpr float kSmallestSpread = 0.012F;  // of a mode: noise of a camera with JPEG
 constexpr float kReach = 2.5F;             // of the mode, in spreads
 constexpr float kDarkest = 0.2F;           // luma of texels that tell an exposure
@@ -45,14 +46,16 @@ Mode find_mode(std::vector<Sample>& samples, float share) {
   return {0.5F * (samples[best].luma + samples[best + count - 1].luma), width};
 }
 
-/// Reads one texel in every view that shows it.
-void gather(const ViewSet& views, const std::vector<ViewGain>& gains, const MapLearning& learning,
+/// Reads one texel in every view that shows it; returns how many there are, hidden ones too.
+std::size_t gather(const ViewSet& views, const std::vector<ViewGain>& gains, const MapLearning& learning,
             const Eigen::Vector3f& point, std::vector<Sample>& samples) {
   samples.clear();
+  std::size_t views_of_texel = 0;
   for (std::size_t v = 0; v < views.views.size(); ++v) {
     const View& view = views.views[v];
     const auto pixel = view.project(point);
     if (!pixel || !view.project.in_image(pixel, 1)) continue;
+    ++views_of_texel;
     if (!learning.masks.empty() &&
         learning.masks[v].at<std::uint8_t>(static_cast<int>(std::lround(pixel.y_px)),
                                            static_cast<int>(std::lround(pixel.x_px))) != 0) {
@@ -62,6 +65,7 @@ void gather(const ViewSet& views, const std::vector<ViewGain>& gains, const MapL
     const cv::Vec3f colour(read[0] / gains[v][0], read[1] / gains[v][1], read[2] / gains[v][2]);
     samples.push_back({luma_of(colour), colour});
   }
+  return views_of_texel;
 }
 
 struct Texel {
@@ -119,8 +123,9 @@ StageMap learn_stage_map(const ViewSet& views, const std::vector<ViewGain>& gain
       for (int column = 0; column < grid.size.width; ++column) {
         const Eigen::Vector2f place =
             grid.point_of(static_cast<float>(column), static_cast<float>(row));
-        gather(views, gains, learning, {place.x(), place.y(), 0}, samples);
-        if (samples.size() < kFewestSamples) continue;
+        const std::size_t shown =
+            gather(views, gains, learning, {place.x(), place.y(), 0}, samples);
+        if (samples.size() < std::max(kFewestSamples, shown / kOneFreeIn)) continue;
         const Texel texel = summarise(samples, learning.mode_share);
         map.colour.at<cv::Vec3f>(row, column) = texel.colour;
         map.sigma.at<float>(row, column) = texel.sigma;

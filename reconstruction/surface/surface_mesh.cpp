@@ -6,6 +6,7 @@
 #include "reconstruction/refine/displacement.h"
 #include "reconstruction/refine/normal_filter.h"
 #include "reconstruction/refine/rims.h"
+#include "reconstruction/surface/marching_tetrahedra.h"
 #include "reconstruction/surface/remesh.h"
 #include "reconstruction/surface/self_intersection.h"
 
@@ -24,7 +25,7 @@ constexpr float kRimReach_px = 3;
 constexpr float kLargestStep = 0.5F;     // of an edge, in one round
 constexpr NormalFilter kFilter{.rounds = 8, .turn = 0.35F};
 constexpr DisplacementWeights kWeights{.rims = 1, .smoothness = 1, .stay = 0.02F};
-constexpr int kUntangleRounds = 12;
+constexpr int kUntangleRounds = 15;
 
 double area_of(const core::Mesh& mesh) {
   double area = 0;
@@ -103,6 +104,13 @@ std::vector<float> confidence_of(const core::Mesh& mesh, const std::vector<RimPo
   return seen;
 }
 
+/// The same distances on coarser points.
+DistanceGrid resampled(const DistanceGrid& grid, float cell_m) {
+  DistanceGrid coarse(grid.box(), cell_m, 0);
+  for (std::size_t i = 0; i < coarse.count(); ++i) coarse[i] = grid.value_at(coarse.point(i));
+  return coarse;
+}
+
 /// Moves vertices of triangles that cross each other to the middle of their neighbours; false where
 /// that does not part them.
 bool untangle(core::Mesh& mesh, int threads) {
@@ -114,6 +122,13 @@ bool untangle(core::Mesh& mesh, int threads) {
       for (int c = 0; c < 3; ++c) {
         tangled[mesh.triangles[s][c]] = 1;
         tangled[mesh.triangles[t][c]] = 1;
+      }
+    }
+    // Those that do not come apart need more room.
+    for (int ring = 0; ring < round / 3; ++ring) {
+      const std::vector<std::uint8_t> before = tangled;
+      for (const auto& t : mesh.triangles) {
+        for (int c = 0; c < 3; ++c) tangled[t[c]] |= before[t[(c + 1) % 3]];
       }
     }
     std::vector<Eigen::Vector3f> sum(mesh.positions.size(), Eigen::Vector3f::Zero());
@@ -153,8 +168,7 @@ Surface make_surface_mesh(const SurfaceInputs& inputs, int threads, const WorkPr
     mesh = remesh(moved, surface.edge_m, 2, onto_mesh(tree));
   }
   if (!untangle(mesh, threads)) {
-    mesh = remesh(inputs.hull, surface.edge_m, kRemeshRounds, onto_zero(inputs.grid));
-    if (!untangle(mesh, threads)) mesh = inputs.hull;  // never crosses itself
+    mesh = march_tetrahedra(resampled(inputs.grid, surface.edge_m));  // never crosses itself
   }
   surface.confidence = confidence_of(
       mesh, find_rims(inputs.views, inputs.backgrounds, mesh, kRimReach_px, threads));
