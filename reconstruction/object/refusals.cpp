@@ -13,25 +13,27 @@ namespace sheen::reconstruction {
 namespace {
 
 constexpr int kDirections = 90;           // of the plane, over half a turn
-constexpr double kWidestBlind = 50;       // degrees between a side's tangent plane and the nearest view
+constexpr double kWidestBlind = 45;       // degrees: a quarter of the circle is walked
+constexpr double kFromAbove = 0.94;       // sine of 70 degrees
 constexpr float kMostHidden = 0.8F;       // of the sheet within its tags
 constexpr double kSecondObject = 0.05;    // of the first one's volume
 constexpr float kLeastCovered = 0.9F;     // of the silhouettes, by the hull
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-/// How far, at worst over the horizontal directions, the views are from looking across one: 0 degrees
-/// would be a view in the tangent plane, which shows exactly where the object ends there.
+/// How far, at worst over the horizontal directions, the views are from looking across one, in plan:
+/// 0 degrees would be a view along the tangent plane, which shows where the object ends there. Views
+/// from above look across all of them.
 double blind_angle_deg(const ViewSet& views, const Eigen::Vector3f& centre) {
   double worst = 0;
   for (int i = 0; i < kDirections; ++i) {
     const double turn = std::numbers::pi * i / kDirections;
-    const Eigen::Vector3f normal(static_cast<float>(std::cos(turn)),
-                                 static_cast<float>(std::sin(turn)), 0);
+    const Eigen::Vector2d normal(std::cos(turn), std::sin(turn));
     double best = 90;
     for (const View& view : views.views) {
-      const Eigen::Vector3f sight = (view.project.eye() - centre).normalized();
-      best = std::min(best, kDegrees * std::asin(std::min(1.0, static_cast<double>(
-                                                                   std::abs(sight.dot(normal))))));
+      const Eigen::Vector3d sight = (view.project.eye() - centre).cast<double>().normalized();
+      if (sight.z() > kFromAbove) return 0;
+      const double along = std::abs(sight.head<2>().normalized().dot(normal));
+      best = std::min(best, kDegrees * std::asin(std::min(1.0, along)));
     }
     worst = std::max(worst, best);
   }

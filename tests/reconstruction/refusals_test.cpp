@@ -41,7 +41,8 @@ TEST(Refusals, AViewRangeThatShowsNoDepth) {
 Components parts(const std::vector<std::pair<std::size_t, Eigen::Vector3f>>& list) {
   Components components;
   for (const auto& [points, middle] : list) {
-    Component part{.points = points};
+    Component part;
+    part.points = points;
     part.box.extend(middle - Eigen::Vector3f::Constant(0.01F));
     part.box.extend(middle + Eigen::Vector3f::Constant(0.01F));
     components.parts.push_back(part);

@@ -16,13 +16,16 @@ namespace sheen::tests {
 
 /// Twelve tags round an empty middle, 20 cm from first to last centre.
 inline capture::Board ring_board() {
-  capture::Board board{.family = "tag36h11"};
+  capture::Board board;
+  board.family = "tag36h11";
   int id = 0;
   for (int row = 0; row < 4; ++row) {
     for (int column = 0; column < 4; ++column) {
       if ((row == 1 || row == 2) && (column == 1 || column == 2)) continue;
-      capture::Board::Tag tag{.size_m = 0.04};
-      tag.board_from_tag.translation() = {(column - 1.5) * 0.2 / 3, (row - 1.5) * 0.2 / 3, 0};
+      capture::Board::Tag tag;
+      tag.size_m = 0.04;
+      tag.board_from_tag.translation() =
+          Eigen::Vector3d((column - 1.5) * 0.2 / 3, (row - 1.5) * 0.2 / 3, 0);
       board.tags[id++] = tag;
     }
   }

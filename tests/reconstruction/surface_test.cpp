@@ -144,13 +144,15 @@ TEST(TriangleTree, AgreesWithAskingEveryTriangle) {
 }
 
 TEST(NormalFilter, FlattensFacesAndKeepsEdgesSharp) {
-  core::Mesh mesh = march_tetrahedra(grid_of(cube, 0.1F));
+  const core::Mesh start = march_tetrahedra(grid_of(cube, 0.1F));
+  const TriangleTree tree(start);
+  core::Mesh mesh =
+      remesh(start, 0.15F, 3, [&](const Eigen::Vector3f& p) { return tree.closest(p).point; });
   std::mt19937 random(3);
   std::normal_distribution<float> noise(0, 0.004F);
   for (auto& p : mesh.positions) p += Eigen::Vector3f(noise(random), noise(random), noise(random));
   const auto normals = filtered_normals(mesh, {.rounds = 10, .turn = 0.35F}, 1);
-  // Away from the edges every normal is that of its face; .1 is six degrees. Slivers of the marching
-  // turn anyhow: their share is small by area, which is what weighs.
+  // Two triangles away from the edges nearly every normal is that of its face; .1 is six degrees.
   double wrong = 0;
   double area = 0;
   for (std::size_t f = 0; f < normals.size(); ++f) {
@@ -159,7 +161,7 @@ TEST(NormalFilter, FlattensFacesAndKeepsEdgesSharp) {
         (mesh.positions[t[0]] + mesh.positions[t[1]] + mesh.positions[t[2]]) / 3;
     Eigen::Vector3f sorted = middle.cwiseAbs();
     std::sort(sorted.begin(), sorted.end());
-    if (sorted[1] > 0.85F) continue;
+    if (sorted[1] > 0.7F) continue;
     const double own = static_cast<double>((mesh.positions[t[1]] - mesh.positions[t[0]])
                                                .cross(mesh.positions[t[2]] - mesh.positions[t[0]])
                                                .norm());
@@ -168,7 +170,7 @@ TEST(NormalFilter, FlattensFacesAndKeepsEdgesSharp) {
     middle.cwiseAbs().maxCoeff(&axis);
     if (std::abs(normals[f][axis]) < 0.995F) wrong += own;
   }
-  EXPECT_LT(wrong / area, 0.02);
+  EXPECT_LT(wrong / area, 0.05);
   EXPECT_EQ(normals, filtered_normals(mesh, {.rounds = 10, .turn = 0.35F}, 3));
 }
 
