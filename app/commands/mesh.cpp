@@ -66,7 +66,8 @@ std::vector<reconstruction::PosedImage> read_images(const capture::Session& sess
   for (std::size_t i = 0; i < count; ++i) chosen.push_back(posed[i * posed.size() / count]);
   std::vector<reconstruction::PosedImage> images;
   pipeline::for_each_view(
-      session, chosen, [&](const capture::Frame& frame, const Eigen::Isometry3d& camera_from_board) {
+      session, chosen,
+      [&](const capture::Frame& frame, const Eigen::Isometry3d& camera_from_board) {
         images.push_back({frame.index, frame.image.clone(), camera_from_board});
         sink.progress({"reading", static_cast<int>(images.size()), static_cast<int>(count)});
       });
@@ -155,7 +156,9 @@ void run_mesh(const MeshOptions& options, const CommandContext& context) {
   const auto images = read_images(session, options, sink);
   const auto found = reconstruction::measure_object(
       options.session, session.camera, board, images, context.threads,
-      [&sink](std::string_view step, int done, int total) { sink.progress({step, done, total}); });
+      [&sink](std::string_view step, int done, int total) {
+        sink.progress({step, done, total});
+      });
   if (!options.image.empty()) draw_outlines(options, session, found.mesh, images);
   const std::string lines = save(options, found.mesh);
   context.publish(to_json(found), describe(found) + lines);
@@ -177,8 +180,7 @@ void add_mesh_command(CommandLine& program, CommandContext& context) {
   command.option("session", options->session, "Session folder, with a board").required();
   command.option("-o,--output", options->output, "Write the mesh here and leave the session alone")
       .type("FILE.ply");
-  command
-      .option("--picture", options->image, "Also draw the mesh's outline over six frames")
+  command.option("--picture", options->image, "Also draw the mesh's outline over six frames")
       .type("FILE.png");
   command.flag("--force", options->force, "Replace a mesh that is there; the old one is kept");
   command

@@ -34,7 +34,8 @@ void copy_into_session(const std::filesystem::path& from, const std::filesystem:
 void write_session_file(const std::filesystem::path& folder, const SessionFile& session);
 
 /// Writes the session.json `from` with another object, placed on the board as its file has it;
-/// `mesh` is its path within the folder. Throws core::Error (bad_input) when `from` is no JSON object.
+/// `mesh` is its path within the folder. Throws core::Error (bad_input) when `from` is no JSON
+/// object.
 void write_object(const std::filesystem::path& from, const std::filesystem::path& to,
                   const std::string& mesh);
 

@@ -20,7 +20,9 @@ class DistanceGrid {
   [[nodiscard]] const Eigen::Array3i& size() const { return size_; }
   [[nodiscard]] float cell_m() const { return cell_m_; }
   [[nodiscard]] std::size_t count() const { return values_.size(); }
-  [[nodiscard]] Eigen::AlignedBox3f box() const { return {first_m_, point(size_.x() - 1, size_.y() - 1, size_.z() - 1)}; }
+  [[nodiscard]] Eigen::AlignedBox3f box() const {
+    return {first_m_, point(size_.x() - 1, size_.y() - 1, size_.z() - 1)};
+  }
 
   [[nodiscard]] std::size_t index(int x, int y, int z) const {
     return (static_cast<std::size_t>(z) * static_cast<std::size_t>(size_.y()) +
@@ -42,7 +44,8 @@ class DistanceGrid {
   [[nodiscard]] float& operator[](std::size_t index) { return values_[index]; }
   [[nodiscard]] float operator[](std::size_t index) const { return values_[index]; }
 
-  /// Limits every value to +-`limit_m` and blurs them (binomial, 1 2 1 along each axis) `rounds` times.
+  /// Limits every value to +-`limit_m` and blurs them (binomial, 1 2 1 along each axis) `rounds`
+  /// times.
   void smooth(float limit_m, int rounds, int threads);
 
   /// Trilinear value; outside the grid that of its nearest place.

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::size_t kFewestViews = 5;
 constexpr std::size_t kOneKnownIn = 4;  // of all views: what stands on the sheet is seen by most
-constexpr float kUnknown_px = -3000;  // below: silhouette_distance says that nothing is known
+constexpr float kUnknown_px = -3000;    // below: silhouette_distance says that nothing is known
 constexpr float kOutside_m = 1;
 constexpr std::size_t kMostDisagreeing = 24;
 
@@ -63,7 +63,8 @@ float vote(const ViewSet& views, const std::vector<OutlineVote>& outlines,
 }  // namespace
 
 void carve_hull(const ViewSet& views, const std::vector<OutlineVote>& outlines,
-                const CarvingVotes& votes, const DistanceGrid* coarse, float band_m, int threads, DistanceGrid& grid) {
+                const CarvingVotes& votes, const DistanceGrid* coarse, float band_m, int threads,
+                DistanceGrid& grid) {
   assert(votes.wrong >= 1 && votes.wrong <= votes.guesses_wrong &&
          votes.guesses_wrong <= static_cast<int>(kMostDisagreeing));
   core::parallel_for(grid.count(), threads, [&](std::size_t begin, std::size_t end) {

@@ -22,11 +22,12 @@ struct CarvingVotes {
   int guesses_wrong = 1;  ///< >= wrong: the same, where distances before a guessed stage count, too
 };
 
-/// The visual hull by distances as votes (study, step 4): phi of a point is the k-th largest over the
-/// views of its distance from the silhouette's outline, in metres at its depth; so k - 1 views may be
-/// wrong about it, more where the stage is guessed. Closed at z = 0. Points that fewer than a quarter of
-/// the views tell something about are outside. `outlines` has one entry per view. With a `coarse` grid only points nearer to its surface than `band_m` are computed anew, the
-/// others are its values.
+/// The visual hull by distances as votes (study, step 4): phi of a point is the k-th largest over
+/// the views of its distance from the silhouette's outline, in metres at its depth; so k - 1 views
+/// may be wrong about it, more where the stage is guessed. Closed at z = 0. Points that fewer than
+/// a quarter of the views tell something about are outside. `outlines` has one entry per view. With
+/// a `coarse` grid only points nearer to its surface than `band_m` are computed anew, the others
+/// are its values.
 void carve_hull(const ViewSet& views, const std::vector<OutlineVote>& outlines,
                 const CarvingVotes& votes, const DistanceGrid* coarse, float band_m, int threads,
                 DistanceGrid& grid);

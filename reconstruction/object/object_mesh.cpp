@@ -21,17 +21,17 @@
 namespace sheen::reconstruction {
 namespace {
 
-constexpr float kStageMargin = 0.35F;      // of the tags' extent, learned beyond it
+constexpr float kStageMargin = 0.35F;  // of the tags' extent, learned beyond it
 constexpr double kMostTexels = 1e6;
-constexpr std::size_t kCoarseViews = 40;   // of the first passes
+constexpr std::size_t kCoarseViews = 40;  // of the first passes
 constexpr int kCoarseWidth_px = 480;
 constexpr int kCoarsePasses = 3;
-constexpr int kCoarseCells = 72;           // along the longest side
-constexpr std::size_t kMostViews = 120;    // of the last pass
-constexpr std::size_t kStageViews = 60;    // that the stage is learned from, at full size
+constexpr int kCoarseCells = 72;         // along the longest side
+constexpr std::size_t kMostViews = 120;  // of the last pass
+constexpr std::size_t kStageViews = 60;  // that the stage is learned from, at full size
 constexpr int kFineCells = 160;
 constexpr float kSmoothLimit_cells = 3;
-constexpr int kSmoothRounds = 2;          // against the steps of pixels
+constexpr int kSmoothRounds = 2;  // against the steps of pixels
 constexpr float kMaskGrown_px = 2;
 
 /// What was found of the object so far.
@@ -123,7 +123,7 @@ int one_in(std::size_t share, std::size_t views) {
 }
 
 CarvingVotes votes_of(std::size_t views) {
-  return {.wrong = one_in(20, views), .guesses_wrong = one_in(6, views)};
+  return {.wrong = one_in(24, views), .guesses_wrong = one_in(6, views)};
 }
 
 /// Everything that is kept while an object is measured.
@@ -162,8 +162,7 @@ class Measurement {
       if (pass > 0) box = box.intersection(grown(shape, 0.15F));
       box.min().z() = -longest_side(box) / kCoarseCells;
       DistanceGrid next(box, longest_side(box) / kCoarseCells, 1);
-      carve_hull(views, work.votes(), votes_of(views.views.size()), nullptr, 0,
-                 threads_, next);
+      carve_hull(views, work.votes(), votes_of(views.views.size()), nullptr, 0, threads_, next);
       shape = pass + 1 < kCoarsePasses ? likeliest(std::move(next)) : checked(std::move(next));
     }
     return shape;

@@ -23,10 +23,10 @@ struct ObjectMesh {
 };
 
 /// Measures the shape of the one object that stands on a board's sheet (docs/mesh-from-session.md):
-/// the sheet is learned, the object cut out of the images, their silhouettes intersected, the surface
-/// moved to where the images show its rims. `session` names the images in errors. Throws core::Error
-/// (bad_input) when the images do not tell a shape: seen from too few sides, off the sheet, the sheet
-/// hidden, nothing there, several objects, one that moved.
+/// the sheet is learned, the object cut out of the images, their silhouettes intersected, the
+/// surface moved to where the images show its rims. `session` names the images in errors. Throws
+/// core::Error (bad_input) when the images do not tell a shape: seen from too few sides, off the
+/// sheet, the sheet hidden, nothing there, several objects, one that moved.
 ObjectMesh measure_object(const std::filesystem::path& session, const core::CameraModel& camera,
                           const capture::Board& board, const std::vector<PosedImage>& images,
                           int threads, const WorkProgress& progress);

@@ -12,17 +12,17 @@
 namespace sheen::reconstruction {
 namespace {
 
-constexpr int kDirections = 90;           // of the plane, over half a turn
-constexpr double kWidestBlind = 45;       // degrees: a quarter of the circle is walked
-constexpr double kFromAbove = 0.94;       // sine of 70 degrees
-constexpr float kMostHidden = 0.8F;       // of the sheet within its tags
-constexpr double kSecondObject = 0.05;    // of the first one's volume
-constexpr float kLeastCovered = 0.9F;     // of the silhouettes, by the hull
+constexpr int kDirections = 90;         // of the plane, over half a turn
+constexpr double kWidestBlind = 45;     // degrees: a quarter of the circle is walked
+constexpr double kFromAbove = 0.94;     // sine of 70 degrees
+constexpr float kMostHidden = 0.8F;     // of the sheet within its tags
+constexpr double kSecondObject = 0.05;  // of the first one's volume
+constexpr float kLeastCovered = 0.65F;  // of the silhouettes, by the hull
 constexpr double kDegrees = 180 / std::numbers::pi;
 
-/// How far, at worst over the horizontal directions, the views are from looking across one, in plan:
-/// 0 degrees would be a view along the tangent plane, which shows where the object ends there. Views
-/// from above look across all of them.
+/// How far, at worst over the horizontal directions, the views are from looking across one, in
+/// plan: 0 degrees would be a view along the tangent plane, which shows where the object ends
+/// there. Views from above look across all of them.
 double blind_angle_deg(const ViewSet& views, const Eigen::Vector3f& centre) {
   double worst = 0;
   for (int i = 0; i < kDirections; ++i) {
@@ -65,22 +65,23 @@ float refuse_hidden_sheet(const std::filesystem::path& session, const capture::B
   std::size_t hidden = 0;
   for (int row = 0; row < map.grid.size.height; ++row) {
     for (int column = 0; column < map.grid.size.width; ++column) {
-      if (!region.contains(map.grid.point_of(static_cast<float>(column), static_cast<float>(row)))) {
+      if (!region.contains(
+              map.grid.point_of(static_cast<float>(column), static_cast<float>(row)))) {
         continue;
       }
       ++within;
-      hidden += map.source.at<std::uint8_t>(row, column) !=
-                        static_cast<std::uint8_t>(TexelSource::seen)
-                    ? 1
-                    : 0;
+      hidden +=
+          map.source.at<std::uint8_t>(row, column) != static_cast<std::uint8_t>(TexelSource::seen)
+              ? 1
+              : 0;
     }
   }
-  const float share =
-      within == 0 ? 1 : static_cast<float>(hidden) / static_cast<float>(within);
+  const float share = within == 0 ? 1 : static_cast<float>(hidden) / static_cast<float>(within);
   if (share <= kMostHidden) return share;
   throw core::bad_input(session,
-                        percent(static_cast<double>(share)) + " of the sheet is never seen, so the "
-                        "object cannot be told from it",
+                        percent(static_cast<double>(share)) +
+                            " of the sheet is never seen, so the "
+                            "object cannot be told from it",
                         "use a larger sheet or a smaller object, and keep the sheet in view");
 }
 

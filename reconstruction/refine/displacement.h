@@ -17,7 +17,8 @@ struct DisplacementWeights {
   float stay = 0.01F;    ///< pull of every vertex towards where it is
 };
 
-/// Moves of all vertices along their normals, metres, that bring rims to where the images want them and turn the triangles towards `triangle_normals`: linear least squares over
+/// Moves of all vertices along their normals, metres, that bring rims to where the images want them
+/// and turn the triangles towards `triangle_normals`: linear least squares over
 ///   rims w (d(rim) - shift)^2 + smoothness (n . (p_j - p_i))^2 + stay d^2
 /// by conjugate gradients.
 std::vector<float> solve_displacement(const core::Mesh& mesh, const std::vector<RimPoint>& rims,

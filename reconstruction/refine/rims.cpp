@@ -124,7 +124,7 @@ class RimFinder {
 
   [[nodiscard]] float depth_at(const cv::Point2f& place) const {
     return depth_.at<float>(static_cast<int>(std::lround(place.y)),
-                                 static_cast<int>(std::lround(place.x)));
+                            static_cast<int>(std::lround(place.x)));
   }
 
   [[nodiscard]] std::optional<Profile> against_stage(const Outline& outline) const {
@@ -160,9 +160,9 @@ class RimFinder {
 
 }  // namespace
 
-std::vector<RimPoint> find_rims(const ViewSet& views, const std::vector<ViewBackground>& backgrounds,
-                                const core::Mesh& mesh,
-                                float reach_px, int threads) {
+std::vector<RimPoint> find_rims(const ViewSet& views,
+                                const std::vector<ViewBackground>& backgrounds,
+                                const core::Mesh& mesh, float reach_px, int threads) {
   std::vector<std::vector<RimPoint>> of_view(views.views.size());
   core::parallel_for(
       of_view.size(), threads,

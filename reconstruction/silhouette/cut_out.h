@@ -18,8 +18,8 @@ struct Silhouette {
 /// How exactly outlines are placed.
 enum class OutlineDetail { pixels, matted };
 
-/// Cuts the object out of view `index`. `mask` (CV_8UC1, not 0: where the object was found so far; may
-/// be empty) tells where to look and leans the decision towards it.
+/// Cuts the object out of view `index`. `mask` (CV_8UC1, not 0: where the object was found so far;
+/// may be empty) tells where to look and leans the decision towards it.
 Silhouette cut_out(const LearnedStage& stage, const ViewSet& views, std::size_t index,
                    const cv::Mat& mask, OutlineDetail detail);
 

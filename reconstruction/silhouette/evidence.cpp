@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kMostDistance = 30;
 constexpr double kBlurPx = 0.7;
-constexpr float kEven = 4;         // distance at which object and stage are equally likely
+constexpr float kEven = 4;              // distance at which object and stage are equally likely
 constexpr float kDeepestShadow = 0.6F;  // of the light on paper that no view shows
 constexpr float kNoShadow = 1.05F;
 constexpr float kEvenGuessed = 2.5F;  // where the stage is guessed
@@ -42,9 +42,9 @@ Evidence compare_with_background(const cv::Mat& image, const Background& backgro
       residual[x] = known[x] == 0 ? colour
                     : guessed     ? but_for_shadow(colour, expected[x])
                                   : cv::Vec3f(colour - expected[x]);
-      d[x] = known[x] != 0 ? std::min(residual[x].dot(residual[x]) / (2 * sigma[x] * sigma[x]),
-                                      kMostDistance)
-                           : 0;
+      d[x] = known[x] != 0
+                 ? std::min(residual[x].dot(residual[x]) / (2 * sigma[x] * sigma[x]), kMostDistance)
+                 : 0;
     }
   }
   cv::GaussianBlur(distance, distance, {0, 0}, kBlurPx);

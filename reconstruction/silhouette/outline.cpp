@@ -14,8 +14,8 @@ namespace sheen::reconstruction {
 namespace {
 
 constexpr float kDeepInside_px = -1e4F;
-constexpr int kReach_px = 3;           // of a profile, to either side
-constexpr int kStepsPerPx = 2;         // of a profile
+constexpr int kReach_px = 3;             // of a profile, to either side
+constexpr int kStepsPerPx = 2;           // of a profile
 constexpr float kLeastContrast = 0.08F;  // between object and background
 constexpr float kLargestShift_px = 2;
 constexpr double kAlong_px = 1.5;  // over which shifts along the outline are averaged
@@ -50,7 +50,8 @@ cv::Vec3f float_bilinear(const cv::Mat& image, float x_px, float y_px) {
 std::optional<float> edge_shift(const cv::Mat& image, const Background& background,
                                 const cv::Point2f& place, const cv::Point2f& outward) {
   constexpr int steps = kReach_px * kStepsPerPx;
-  const cv::Rect2f safe(1, 1, static_cast<float>(image.cols - 3), static_cast<float>(image.rows - 3));
+  const cv::Rect2f safe(1, 1, static_cast<float>(image.cols - 3),
+                        static_cast<float>(image.rows - 3));
   if (!safe.contains(place - outward * static_cast<float>(kReach_px)) ||
       !safe.contains(place + outward * static_cast<float>(kReach_px))) {
     return std::nullopt;
@@ -58,9 +59,7 @@ std::optional<float> edge_shift(const cv::Mat& image, const Background& backgrou
   // The object's colour, just within.
   cv::Vec3f object(0, 0, 0);
   int inner = 0;
-  const auto at = [&](int i) {
-    return place + outward * (static_cast<float>(i) / kStepsPerPx);
-  };
+  const auto at = [&](int i) { return place + outward * (static_cast<float>(i) / kStepsPerPx); };
   for (int i = -steps; i <= -steps / 2; ++i, ++inner) {
     object += bilinear_bgr(image, at(i).x, at(i).y);
   }
@@ -75,8 +74,8 @@ std::optional<float> edge_shift(const cv::Mat& image, const Background& backgrou
     const cv::Vec3f contrast = object - stage;
     const float strength = contrast.dot(contrast);
     if (strength < kLeastContrast * kLeastContrast) return std::nullopt;
-    const float alpha = std::clamp(
-        (bilinear_bgr(image, p.x, p.y) - stage).dot(contrast) / strength, 0.0F, 1.0F);
+    const float alpha =
+        std::clamp((bilinear_bgr(image, p.x, p.y) - stage).dot(contrast) / strength, 0.0F, 1.0F);
     if (i == -steps + 1) first = alpha;
     if (i == steps - 1) last = alpha;
     sum += alpha;

@@ -11,9 +11,9 @@ namespace sheen::reconstruction {
 /// CV_8UC1, PixelLabel; unknown pixels are deep inside, so that they carve nothing.
 cv::Mat silhouette_distance(const cv::Mat& labels);
 
-/// The same to a fraction of a pixel (study, step 5a): along every normal of the outline the share of
-/// the object's colour, from `image` (CV_8UC3, BGR), the colours just within and the background, says
-/// where its edge really is; the distances move by that.
+/// The same to a fraction of a pixel (study, step 5a): along every normal of the outline the share
+/// of the object's colour, from `image` (CV_8UC3, BGR), the colours just within and the background,
+/// says where its edge really is; the distances move by that.
 cv::Mat matted_distance(const cv::Mat& labels, const cv::Mat& image, const Background& background);
 
 }  // namespace sheen::reconstruction

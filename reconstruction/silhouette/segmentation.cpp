@@ -23,8 +23,7 @@ constexpr std::array<Step, 4> kSteps{{{1, 0, 1}, {0, 1, 1}, {1, 1, 0.7071F}, {-1
 float smoothness(const cv::Vec3f& a, const cv::Vec3f& b, float strength) {
   const cv::Vec3f d = a - b;
   const float contrast = d.dot(d) / (kContrast * kContrast);
-  return kSmoothness * strength *
-         (kLeastSmoothness + (1 - kLeastSmoothness) * std::exp(-contrast));
+  return kSmoothness * strength * (kLeastSmoothness + (1 - kLeastSmoothness) * std::exp(-contrast));
 }
 
 }  // namespace
@@ -36,8 +35,8 @@ cv::Mat segment(const Evidence& evidence, const cv::Mat& prior, const cv::Rect& 
   const auto node = [&](int x, int y) { return (y - box.y) * box.width + x - box.x; };
   for (int y = box.y; y < box.y + box.height; ++y) {
     for (int x = box.x; x < box.x + box.width; ++x) {
-      const float odds = evidence.log_odds.at<float>(y, x) +
-                         (prior.empty() ? 0.0F : prior.at<float>(y, x));
+      const float odds =
+          evidence.log_odds.at<float>(y, x) + (prior.empty() ? 0.0F : prior.at<float>(y, x));
       const int n = graph.addVtx();
       graph.addTermWeights(n, std::max(odds, 0.0F), std::max(-odds, 0.0F));
     }
@@ -48,8 +47,7 @@ cv::Mat segment(const Evidence& evidence, const cv::Mat& prior, const cv::Rect& 
       for (const Step& step : kSteps) {
         const cv::Point there(x + step.dx, y + step.dy);
         if (!box.contains(there)) continue;
-        const float w =
-            smoothness(here, evidence.residual.at<cv::Vec3f>(there), step.strength);
+        const float w = smoothness(here, evidence.residual.at<cv::Vec3f>(there), step.strength);
         graph.addEdges(node(x, y), node(there.x, there.y), w, w);
       }
     }

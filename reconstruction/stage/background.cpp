@@ -11,13 +11,13 @@
 namespace sheen::reconstruction {
 namespace {
 
-constexpr float kNoise = 0.015F;           // of a pixel's channel
+constexpr float kNoise = 0.015F;            // of a pixel's channel
 constexpr float kMisplacement_px2 = 0.35F;  // variance of the print's place in the image
-constexpr int kWindows = 10;               // across the image
-constexpr int kStride = 2;                 // of the pixels that the fit reads
-constexpr int kRounds = 4;                 // of reweighting
-constexpr float kPixelsOfPrior = 40;       // by which the gain is pulled
-constexpr float kOffsetPrior = 3;          // the same for the offset, times that
+constexpr int kWindows = 10;                // across the image
+constexpr int kStride = 2;                  // of the pixels that the fit reads
+constexpr int kRounds = 4;                  // of reweighting
+constexpr float kPixelsOfPrior = 40;        // by which the gain is pulled
+constexpr float kOffsetPrior = 3;           // the same for the offset, times that
 
 /// Gain and offset of three channels.
 struct Light {

@@ -14,9 +14,9 @@ struct Background {
   cv::Mat source;  ///< CV_8UC1, TexelSource; unknown outside the map
 };
 
-/// The map seen by a view. Gain and offset per window of a tenth of the width are fitted robustly to
-/// the image where `mask` (CV_8UC1, not 0: object; may be empty) shows the stage, with a pull towards
-/// `gain` that is `trust` times that of forty pixels (study, step 2).
+/// The map seen by a view. Gain and offset per window of a tenth of the width are fitted robustly
+/// to the image where `mask` (CV_8UC1, not 0: object; may be empty) shows the stage, with a pull
+/// towards `gain` that is `trust` times that of forty pixels (study, step 2).
 Background predict_background(const StageMap& map, const ViewSet& views, const View& view,
                               const ViewGain& gain, const cv::Mat& mask, float trust);
 

@@ -45,8 +45,10 @@ cv::Mat region_mask(const capture::Board& board, const PlaneGrid& grid) {
   const Eigen::Vector2f least = grid.texel_of(region.min());
   const Eigen::Vector2f most = grid.texel_of(region.max());
   cv::Mat mask(grid.size, CV_8UC1, cv::Scalar(0));
-  const cv::Point first(static_cast<int>(std::ceil(least.x())), static_cast<int>(std::ceil(least.y())));
-  const cv::Point last(static_cast<int>(std::floor(most.x())), static_cast<int>(std::floor(most.y())));
+  const cv::Point first(static_cast<int>(std::ceil(least.x())),
+                        static_cast<int>(std::ceil(least.y())));
+  const cv::Point last(static_cast<int>(std::floor(most.x())),
+                       static_cast<int>(std::floor(most.y())));
   cv::rectangle(mask, first, last, cv::Scalar(255), cv::FILLED);
   return mask;
 }
@@ -125,7 +127,8 @@ void inpaint_hidden_paper(const capture::Board& board, StageMap& map) {
   cv::Mat colour(map.grid.size, CV_32FC3, cv::Scalar::all(0));
   for (int y = 0; y < weight.rows; ++y) {
     for (int x = 0; x < weight.cols; ++x) {
-      if (map.source.at<std::uint8_t>(y, x) != static_cast<std::uint8_t>(TexelSource::seen)) continue;
+      if (map.source.at<std::uint8_t>(y, x) != static_cast<std::uint8_t>(TexelSource::seen))
+        continue;
       const auto& seen = map.colour.at<cv::Vec3f>(y, x);
       if (luma_of(seen) < 0.35F * luma_of(*paper)) continue;
       weight.at<float>(y, x) = 1;

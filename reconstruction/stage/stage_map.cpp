@@ -14,7 +14,8 @@ namespace sheen::reconstruction {
 namespace {
 
 constexpr std::size_t kFewestSamples = 4;
-constexpr std::size_t kOneFreeIn = 4;  // of the views of a texel: fewer may show the object after all
+constexpr std::size_t kOneFreeIn =
+    4;  // of the views of a texel: fewer may show the object after all
 constexpr float kSmallestSpread = 0.012F;  // of a mode: noise of a camera with JPEG
 constexpr float kReach = 2.5F;             // of the mode, in spreads
 constexpr float kDarkest = 0.2F;           // luma of texels that tell an exposure
@@ -47,8 +48,9 @@ Mode find_mode(std::vector<Sample>& samples, float share) {
 }
 
 /// Reads one texel in every view that shows it; returns how many there are, hidden ones too.
-std::size_t gather(const ViewSet& views, const std::vector<ViewGain>& gains, const MapLearning& learning,
-            const Eigen::Vector3f& point, std::vector<Sample>& samples) {
+std::size_t gather(const ViewSet& views, const std::vector<ViewGain>& gains,
+                   const MapLearning& learning, const Eigen::Vector3f& point,
+                   std::vector<Sample>& samples) {
   samples.clear();
   std::size_t views_of_texel = 0;
   for (std::size_t v = 0; v < views.views.size(); ++v) {
@@ -87,7 +89,8 @@ Texel summarise(std::vector<Sample>& samples, float mode_share) {
   }
   const cv::Vec3f mean = sum * (1 / count);
   float variance = 0;
-  for (int c = 0; c < 3; ++c) variance += std::max(0.0F, squares[c] / count - mean[c] * mean[c]) / 3;
+  for (int c = 0; c < 3; ++c)
+    variance += std::max(0.0F, squares[c] / count - mean[c] * mean[c]) / 3;
   return {mean, std::sqrt(variance)};
 }
 

@@ -52,7 +52,8 @@ struct MapLearning {
 PlaneGrid plane_grid(const ViewSet& views, const Eigen::AlignedBox2f& region, double most_texels);
 
 /// Learns the map: per texel the mean of the samples round the mode of their luma (study, step 1).
-/// Texels with fewer than four samples, or that most views do not show free, stay unknown. `gains` has one entry per view.
+/// Texels with fewer than four samples, or that most views do not show free, stay unknown. `gains`
+/// has one entry per view.
 StageMap learn_stage_map(const ViewSet& views, const std::vector<ViewGain>& gains,
                          const PlaneGrid& grid, const MapLearning& learning, int threads);
 

@@ -36,8 +36,8 @@ std::vector<Index> find_twins(const std::vector<Index>& vertices) {
     const auto& [a0, a1, g] = edges[i];
     const auto& [b0, b1, h] = edges[i + 1];
     const bool pair = a0 == b0 && a1 == b1 && vertices[g] != vertices[h];
-    const bool third = i + 2 < edges.size() && std::get<0>(edges[i + 2]) == a0 &&
-                       std::get<1>(edges[i + 2]) == a1;
+    const bool third =
+        i + 2 < edges.size() && std::get<0>(edges[i + 2]) == a0 && std::get<1>(edges[i + 2]) == a1;
     if (!pair || third) throw std::invalid_argument("the mesh is not closed and manifold");
     twins[g] = h;
     twins[h] = g;
@@ -181,10 +181,10 @@ void EdgeMesh::collapse(Index h, const Eigen::Vector3f& place) {
   for_each_outgoing(a, [&](Index out) { leaving.push_back(out); });
   for (const Index out : leaving) vertices_[out] = b;
   // Close the gaps of the two triangles.
-  const Index bc = twins_[next(h)];       // c -> b
-  const Index ca = twins_[previous(h)];   // a -> c, now b -> c
-  const Index ad = twins_[next(g)];       // d -> a, now d -> b
-  const Index db = twins_[previous(g)];   // b -> d
+  const Index bc = twins_[next(h)];      // c -> b
+  const Index ca = twins_[previous(h)];  // a -> c, now b -> c
+  const Index ad = twins_[next(g)];      // d -> a, now d -> b
+  const Index db = twins_[previous(g)];  // b -> d
   join(bc, ca);
   join(ad, db);
   for (const Index removed : {h, next(h), previous(h), g, next(g), previous(g)}) {

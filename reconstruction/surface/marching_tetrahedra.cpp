@@ -25,8 +25,7 @@ constexpr std::array<std::array<int, 4>, 6> kTetrahedra{
 class Marcher {
  public:
   explicit Marcher(const DistanceGrid& grid) : grid_(grid), size_(grid.size()) {
-    const auto layer =
-        static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y());
+    const auto layer = static_cast<std::size_t>(size_.x()) * static_cast<std::size_t>(size_.y());
     for (auto& edges : edges_) edges.assign(layer * 8, kNone);
   }
 
@@ -138,7 +137,8 @@ class Marcher {
 
   const DistanceGrid& grid_;
   Eigen::Array3i size_;
-  std::array<std::vector<std::uint32_t>, 2> edges_;  ///< vertices by lower end: layer z, layer z + 1
+  std::array<std::vector<std::uint32_t>, 2>
+      edges_;  ///< vertices by lower end: layer z, layer z + 1
   core::Mesh mesh_;
 };
 

@@ -32,9 +32,8 @@ void split_long_edges(EdgeMesh& mesh, float longest, const ProjectOntoSurface& p
 bool makes_long_edge(const EdgeMesh& mesh, Index h, const Eigen::Vector3f& place, float longest) {
   bool is_long = false;
   for (const Index end : {mesh.from(h), mesh.to(h)}) {
-    mesh.for_each_outgoing(end, [&](Index out) {
-      is_long |= (mesh.position(mesh.to(out)) - place).norm() > longest;
-    });
+    mesh.for_each_outgoing(
+        end, [&](Index out) { is_long |= (mesh.position(mesh.to(out)) - place).norm() > longest; });
   }
   return is_long;
 }
@@ -43,8 +42,7 @@ void collapse_short_edges(EdgeMesh& mesh, float shortest, float longest,
                           const ProjectOntoSurface& project) {
   for (Index h = 0; h < mesh.half_edges(); ++h) {
     if (!mesh.is_alive(h) || !(mesh.length(h) < shortest)) continue;
-    const Eigen::Vector3f middle =
-        0.5F * (mesh.position(mesh.from(h)) + mesh.position(mesh.to(h)));
+    const Eigen::Vector3f middle = 0.5F * (mesh.position(mesh.from(h)) + mesh.position(mesh.to(h)));
     if (makes_long_edge(mesh, h, middle, longest)) continue;
     if (!mesh.may_collapse(h, middle)) continue;
     const Index kept = mesh.to(h);
@@ -63,8 +61,7 @@ void even_valences(EdgeMesh& mesh) {
     const int c = mesh.valence(mesh.across(h)) - 6;
     const int d = mesh.valence(mesh.across(mesh.twin(h))) - 6;
     const int now = a * a + b * b + c * c + d * d;
-    const int then =
-        (a - 1) * (a - 1) + (b - 1) * (b - 1) + (c + 1) * (c + 1) + (d + 1) * (d + 1);
+    const int then = (a - 1) * (a - 1) + (b - 1) * (b - 1) + (c + 1) * (c + 1) + (d + 1) * (d + 1);
     if (then < now && mesh.may_flip(h)) mesh.flip(h);
   }
 }

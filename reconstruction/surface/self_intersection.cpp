@@ -2,8 +2,8 @@
 #include "reconstruction/surface/self_intersection.h"
 
 #include "core/concurrency/parallel_for.h"
-#include "reconstruction/surface/triangle_tree.h"
 #include "reconstruction/surface/edge_mesh.h"
+#include "reconstruction/surface/triangle_tree.h"
 
 #include <algorithm>
 #include <array>

@@ -2,13 +2,13 @@
 #include "reconstruction/surface/surface_mesh.h"
 
 #include "core/mesh/repair.h"
-#include "reconstruction/surface/triangle_tree.h"
 #include "reconstruction/refine/displacement.h"
 #include "reconstruction/refine/normal_filter.h"
 #include "reconstruction/refine/rims.h"
 #include "reconstruction/surface/marching_tetrahedra.h"
 #include "reconstruction/surface/remesh.h"
 #include "reconstruction/surface/self_intersection.h"
+#include "reconstruction/surface/triangle_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,12 +17,12 @@ namespace sheen::reconstruction {
 namespace {
 
 constexpr float kEdge_px = 2.5F;
-constexpr float kEdgeCells = 1.5F;       // shorter edges would show the grid
+constexpr float kEdgeCells = 1.5F;  // shorter edges would show the grid
 constexpr double kMostTriangles = 60000;
 constexpr int kRemeshRounds = 5;
 constexpr int kRefineRounds = 4;
 constexpr float kRimReach_px = 3;
-constexpr float kLargestStep = 0.5F;     // of an edge, in one round
+constexpr float kLargestStep = 0.5F;  // of an edge, in one round
 constexpr NormalFilter kFilter{.rounds = 8, .turn = 0.35F};
 constexpr DisplacementWeights kWeights{.rims = 1, .smoothness = 1, .stay = 0.02F};
 constexpr int kUntangleRounds = 15;
@@ -72,8 +72,7 @@ void recompute_normals(core::Mesh& mesh) {
 
 void move_vertices(core::Mesh& mesh, const std::vector<float>& displacement, float largest_m) {
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    mesh.positions[i] +=
-        std::clamp(displacement[i], -largest_m, largest_m) * mesh.normals[i];
+    mesh.positions[i] += std::clamp(displacement[i], -largest_m, largest_m) * mesh.normals[i];
     // The sheet carries the object.
     mesh.positions[i].z() = std::max(mesh.positions[i].z(), 0.0F);
   }
@@ -170,8 +169,8 @@ Surface make_surface_mesh(const SurfaceInputs& inputs, int threads, const WorkPr
   if (!untangle(mesh, threads)) {
     mesh = march_tetrahedra(resampled(inputs.grid, surface.edge_m));  // never crosses itself
   }
-  surface.confidence = confidence_of(
-      mesh, find_rims(inputs.views, inputs.backgrounds, mesh, kRimReach_px, threads));
+  surface.confidence =
+      confidence_of(mesh, find_rims(inputs.views, inputs.backgrounds, mesh, kRimReach_px, threads));
   surface.mesh = std::move(mesh);
   progress("surface", kRefineRounds + 2, kRefineRounds + 2);
   return surface;

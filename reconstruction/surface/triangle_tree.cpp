@@ -131,9 +131,8 @@ SurfacePlace TriangleTree::closest(const Eigen::Vector3f& point, float within) c
   return best;
 }
 
-void TriangleTree::for_each_in(
-    const Eigen::AlignedBox3f& box,
-    const std::function<void(std::uint32_t triangle_idx)>& visit) const {
+void TriangleTree::for_each_in(const Eigen::AlignedBox3f& box,
+                               const std::function<void(std::uint32_t triangle_idx)>& visit) const {
   std::array<std::uint32_t, kDeepest> open{};
   std::size_t count = 0;
   if (!nodes_.empty()) open[count++] = 0;

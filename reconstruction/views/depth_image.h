@@ -16,8 +16,8 @@ struct DepthImage {
   [[nodiscard]] cv::Mat mask() const { return depth > 0; }
 };
 
-/// Draws the nearest fronts of a mesh (board frame). Triangles that reach behind the camera or beyond
-/// the lens model are left out.
+/// Draws the nearest fronts of a mesh (board frame). Triangles that reach behind the camera or
+/// beyond the lens model are left out.
 DepthImage draw_depth(const core::Mesh& mesh, const Projection& project);
 
 }  // namespace sheen::reconstruction

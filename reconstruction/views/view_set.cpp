@@ -38,8 +38,7 @@ core::CameraModel reduced_camera(const core::CameraModel& camera, int factor, cv
   intrinsics.width_px = size.width;
   intrinsics.height_px = size.height;
   intrinsics.focal_px /= factor;
-  intrinsics.principal_px =
-      ((intrinsics.principal_px.array() + 0.5) / factor - 0.5).matrix();
+  intrinsics.principal_px = ((intrinsics.principal_px.array() + 0.5) / factor - 0.5).matrix();
   return core::CameraModel(intrinsics);
 }
 

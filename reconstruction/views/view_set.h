@@ -40,8 +40,8 @@ ViewSet make_view_set(const core::CameraModel& camera, const std::vector<PosedIm
 /// that makes them no wider than `widest_px`.
 ViewSet reduced(const ViewSet& views, std::size_t most, int widest_px, int threads);
 
-/// Where the ray of a pixel meets the plane z = 0: board frame, metres. NaN where it does not, or so
-/// flatly that nothing can be learned (less than two degrees).
+/// Where the ray of a pixel meets the plane z = 0: board frame, metres. NaN where it does not, or
+/// so flatly that nothing can be learned (less than two degrees).
 cv::Mat plane_points(const ViewSet& views, const View& view);
 
 }  // namespace sheen::reconstruction

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Silhouettes of a ball, known in closed form, to its visual hull.
 #include "reconstruction/hull/visual_hull.h"
-
 #include "reconstruction/silhouette/outline.h"
 #include "reconstruction/silhouette/segmentation.h"
 #include "tests/reconstruction/stage_for_tests.h"
@@ -16,8 +15,8 @@ constexpr double kDistance_m = 0.4;
 constexpr int kViews = 24;
 const Eigen::Vector3d kCentre(0, 0, 0.05);
 
-/// A ball in the middle of the image is a disc: its tangent cone has sin(half angle) = R / D, so its
-/// radius in the plane z = 1 is R / sqrt(D^2 - R^2).
+/// A ball in the middle of the image is a disc: its tangent cone has sin(half angle) = R / D, so
+/// its radius in the plane z = 1 is R / sqrt(D^2 - R^2).
 std::vector<OutlineVote> ball_outlines(const ViewSet& views) {
   const double radius_px = views.camera.intrinsics().focal_px.x() * kRadius_m /
                            std::sqrt(kDistance_m * kDistance_m - kRadius_m * kRadius_m);
@@ -50,17 +49,16 @@ struct BallHull {
 TEST(VisualHull, OfABallLiesBetweenItAndTheClosedForm) {
   const DistanceGrid grid = BallHull().carve({});
   // Views lie in one plane through the centre. In a view's own middle plane its cone has the radius
-  // D R / sqrt(D^2 - R^2) = 30.1 mm; straight up every view has that one. In the plane of the views,
-  // 24 strips of that half width, 15 degrees apart, leave a regular 24-gon whose corners lie
-  // 1 / cos(7.5 degrees) = 1.0086 farther out; cones widen behind the centre by at most R / D, which
-  // at a tangent point is compensated by the view from the other side.
-  const double cone_m = kDistance_m * kRadius_m /
-                        std::sqrt(kDistance_m * kDistance_m - kRadius_m * kRadius_m);
+  // D R / sqrt(D^2 - R^2) = 30.1 mm; straight up every view has that one. In the plane of the
+  // views, 24 strips of that half width, 15 degrees apart, leave a regular 24-gon whose corners lie
+  // 1 / cos(7.5 degrees) = 1.0086 farther out; cones widen behind the centre by at most R / D,
+  // which at a tangent point is compensated by the view from the other side.
+  const double cone_m =
+      kDistance_m * kRadius_m / std::sqrt(kDistance_m * kDistance_m - kRadius_m * kRadius_m);
   const double corner_m = cone_m / std::cos(std::numbers::pi / kViews);
   const auto reach = [&](const Eigen::Vector3d& direction) {
     double r = 0.02;
-    while (r < 0.044 &&
-           grid.value_at((kCentre + r * direction).cast<float>()) < 0) {
+    while (r < 0.044 && grid.value_at((kCentre + r * direction).cast<float>()) < 0) {
       r += 1e-5;
     }
     return r;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // From images to a surface: a ball on a sheet, drawn ray by ray.
 #include "reconstruction/object/object_mesh.h"
-
 #include "reconstruction/surface/self_intersection.h"
 #include "tests/reconstruction/stage_for_tests.h"
 
@@ -72,8 +71,7 @@ ObjectMesh measure(int threads) {
       images.push_back({static_cast<int>(images.size()), draw(camera, board, pose), pose});
     }
   }
-  return measure_object("walk", camera, board, images, threads,
-                        [](std::string_view, int, int) {});
+  return measure_object("walk", camera, board, images, threads, [](std::string_view, int, int) {});
 }
 
 TEST(MeasuredObject, IsTheBallToAFractionOfAPixel) {
@@ -87,8 +85,9 @@ TEST(MeasuredObject, IsTheBallToAFractionOfAPixel) {
   std::size_t count = 0;
   for (const auto& p : found.mesh.positions) {
     const Eigen::Vector3d from = p.cast<double>() - kBallCentre;
-    // Below there is nothing to see but the sheet, above no view looks along the surface: views at 55
-    // degrees show rims whose normals rise to 35 degrees, sin 35 = .57, lower ones see beyond the map.
+    // Below there is nothing to see but the sheet, above no view looks along the surface: views at
+    // 55 degrees show rims whose normals rise to 35 degrees, sin 35 = .57, lower ones see beyond
+    // the map.
     if (from.z() < 0 || from.z() > 0.57 * kBallRadius_m) continue;
     const double error = std::abs(from.norm() - kBallRadius_m);
     sum += error;

@@ -56,10 +56,15 @@ TEST(Refusals, WhatStandsThere) {
   const Eigen::Vector3f middle(0, 0, 0.02F);
   const Eigen::Vector3f beside(0.3F, 0, 0.02F);
   expect_refused(
-      [&] { refuse_what_stands_there("walk", board, parts({{1000, middle}, {400, -middle}})); },
+      [&] {
+        refuse_what_stands_there("walk", board, parts({{1000, middle}, {400, -middle}}));
+      },
       "more than one object", "one object at a time");
-  expect_refused([&] { refuse_what_stands_there("walk", board, parts({{1000, beside}})); },
-                 "beside the sheet's tags", "in their middle");
+  expect_refused(
+      [&] {
+        refuse_what_stands_there("walk", board, parts({{1000, beside}}));
+      },
+      "beside the sheet's tags", "in their middle");
   // A speck is no object.
   EXPECT_NO_THROW(refuse_what_stands_there("walk", board, parts({{1000, middle}, {3, beside}})));
 }
@@ -69,8 +74,8 @@ TEST(Refusals, ASheetThatIsHidden) {
   StageMap map;
   map.grid = {{-0.15F, -0.15F}, 0.01F, {31, 31}};
   map.source = cv::Mat(31, 31, CV_8UC1, cv::Scalar(static_cast<double>(TexelSource::unknown)));
-  expect_refused([&] { refuse_hidden_sheet("walk", board, map); }, "100 % of the sheet is never seen",
-                 "larger sheet or a smaller object");
+  expect_refused([&] { refuse_hidden_sheet("walk", board, map); },
+                 "100 % of the sheet is never seen", "larger sheet or a smaller object");
   map.source.setTo(static_cast<double>(TexelSource::seen));
   EXPECT_EQ(refuse_hidden_sheet("walk", board, map), 0);
 }

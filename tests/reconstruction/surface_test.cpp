@@ -96,9 +96,8 @@ TEST(Remesh, KeepsTheHoleOfARing) {
   const DistanceGrid grid = grid_of(torus, 0.08F);
   const core::Mesh start = march_tetrahedra(grid);
   const TriangleTree tree(start);
-  const core::Mesh mesh = remesh(start, 0.16F, 4, [&](const Eigen::Vector3f& p) {
-    return tree.closest(p).point;
-  });
+  const core::Mesh mesh =
+      remesh(start, 0.16F, 4, [&](const Eigen::Vector3f& p) { return tree.closest(p).point; });
   EXPECT_TRUE(is_closed_manifold(mesh));
   EXPECT_EQ(euler_number(mesh), 0);
 }
