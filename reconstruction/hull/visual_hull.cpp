@@ -136,6 +136,17 @@ Components find_components(const DistanceGrid& grid) {
   return found;
 }
 
+Components find_standing(float foot_m, DistanceGrid& grid) {
+  const Components all = find_components(grid);
+  for (std::size_t i = 0; i < grid.count(); ++i) {
+    const int own = all.of_point[i];
+    if (own >= 0 && all.parts[static_cast<std::size_t>(own)].box.min().z() > foot_m) {
+      grid[i] = grid.cell_m();
+    }
+  }
+  return find_components(grid);
+}
+
 void keep_component(const Components& components, int kept, DistanceGrid& grid) {
   for (std::size_t i = 0; i < grid.count(); ++i) {
     const int own = components.of_point[i];

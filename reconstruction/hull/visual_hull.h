@@ -46,6 +46,10 @@ struct Components {
 };
 Components find_components(const DistanceGrid& grid);
 
+/// The same after components that nowhere come below `foot_m` have been turned to the outside: what
+/// does not stand on the sheet is a phantom.
+Components find_standing(float foot_m, DistanceGrid& grid);
+
 /// Turns everything but one component to the outside.
 void keep_component(const Components& components, int kept, DistanceGrid& grid);
 

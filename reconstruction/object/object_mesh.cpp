@@ -22,16 +22,21 @@ namespace sheen::reconstruction {
 namespace {
 
 constexpr float kStageMargin = 0.35F;  // of the tags' extent, learned beyond it
+constexpr float kHighest = 0.8F;       // of the lowest camera: an object ends below
+constexpr float kSpaceMargin = 0.05F;  // and where an object is looked for
 constexpr double kMostTexels = 1e6;
 constexpr std::size_t kCoarseViews = 40;  // of the first passes
 constexpr int kCoarseWidth_px = 480;
 constexpr int kCoarsePasses = 3;
+constexpr std::size_t kOneViewIn = 24;   // may be wrong in the last pass,
+constexpr std::size_t kOneGuessIn = 6;   // where the stage is guessed
 constexpr int kCoarseCells = 72;         // along the longest side
 constexpr std::size_t kMostViews = 120;  // of the last pass
 constexpr std::size_t kStageViews = 60;  // that the stage is learned from, at full size
 constexpr int kFineCells = 160;
 constexpr float kSmoothLimit_cells = 3;
 constexpr int kSmoothRounds = 2;  // against the steps of pixels
+constexpr float kFoot = 0.06F;    // of the space: objects stand on the sheet
 constexpr float kMaskGrown_px = 2;
 
 /// What was found of the object so far.
@@ -44,17 +49,20 @@ float longest_side(const Eigen::AlignedBox3f& box) {
   return box.sizes().maxCoeff();
 }
 
-Eigen::AlignedBox2f stage_region(const capture::Board& board) {
-  Eigen::AlignedBox2f region = tags_region(board);
-  const Eigen::Vector2f margin = kStageMargin * region.sizes();
+Eigen::AlignedBox2f grown_by(const Eigen::AlignedBox2f& region, float share) {
+  const Eigen::Vector2f margin = share * region.sizes();
   return {region.min() - margin, region.max() + margin};
+}
+
+Eigen::AlignedBox2f stage_region(const capture::Board& board) {
+  return grown_by(tags_region(board), kStageMargin);
 }
 
 /// Where an object may be: above the sheet, below every camera.
 Eigen::AlignedBox3f space_above(const capture::Board& board, const ViewSet& views) {
-  const Eigen::AlignedBox2f region = stage_region(board);
+  const Eigen::AlignedBox2f region = grown_by(tags_region(board), kSpaceMargin);
   float top = region.sizes().maxCoeff();
-  for (const View& view : views.views) top = std::min(top, view.project.eye().z());
+  for (const View& view : views.views) top = std::min(top, kHighest * view.project.eye().z());
   return {Eigen::Vector3f(region.min().x(), region.min().y(), 0),
           Eigen::Vector3f(region.max().x(), region.max().y(), std::max(top, 0.01F))};
 }
@@ -122,8 +130,12 @@ int one_in(std::size_t share, std::size_t views) {
   return std::clamp(static_cast<int>(views / share), 1, 24);
 }
 
-CarvingVotes votes_of(std::size_t views) {
-  return {.wrong = one_in(24, views), .guesses_wrong = one_in(6, views)};
+/// The first passes know the stage badly: they had better find too much than too little, since what
+/// is not found is learned as stage.
+CarvingVotes votes_of_pass(int pass, std::size_t views) {
+  constexpr std::array<std::size_t, kCoarsePasses> shares{8, 12, 20};
+  return {.wrong = one_in(shares[static_cast<std::size_t>(pass)], views),
+          .guesses_wrong = one_in(kOneGuessIn, views)};
 }
 
 /// Everything that is kept while an object is measured.
@@ -159,10 +171,11 @@ class Measurement {
       work.cut(stage, masks, OutlineDetail::pixels, progress_,
                "outlines, pass " + std::to_string(pass + 1));
       Eigen::AlignedBox3f box = space_above(board_, views);
-      if (pass > 0) box = box.intersection(grown(shape, 0.15F));
+      if (pass > 0) box = box.intersection(grown(shape, 0.3F));
       box.min().z() = -longest_side(box) / kCoarseCells;
       DistanceGrid next(box, longest_side(box) / kCoarseCells, 1);
-      carve_hull(views, work.votes(), votes_of(views.views.size()), nullptr, 0, threads_, next);
+      carve_hull(views, work.votes(), votes_of_pass(pass, views.views.size()), nullptr, 0, threads_,
+                 next);
       shape = pass + 1 < kCoarsePasses ? likeliest(std::move(next)) : checked(std::move(next));
     }
     return shape;
@@ -185,8 +198,10 @@ class Measurement {
     const float cell = longest_side(box) / kFineCells;
     box.min().z() = -2 * cell;
     DistanceGrid grid(box, cell, 1);
-    carve_hull(views_, work.votes(), votes_of(views_.views.size()), &coarse.grid,
-               2.5F * coarse.grid.cell_m(), threads_, grid);
+    carve_hull(views_, work.votes(),
+               {.wrong = one_in(kOneViewIn, views_.views.size()),
+                .guesses_wrong = one_in(kOneGuessIn, views_.views.size())},
+               &coarse.grid, 2.5F * coarse.grid.cell_m(), threads_, grid);
     grid.smooth(kSmoothLimit_cells * cell, kSmoothRounds, threads_);
     return checked(std::move(grid));
   }
@@ -199,21 +214,20 @@ class Measurement {
 
   /// While the stage is half known, pieces of it may float about: the largest one over the tags.
   [[nodiscard]] Shape likeliest(DistanceGrid grid) const {
-    const Components components = find_components(grid);
+    const Components components = find_standing(kFoot * longest_side(grid.box()), grid);
     refuse_empty_sheet(session_, components);
-    const Eigen::AlignedBox2f region = tags_region(board_);
+    // What reaches the space's sides goes on beyond them.
+    const Eigen::Vector3f margin(1.5F * grid.cell_m(), 1.5F * grid.cell_m(), -1);
+    const Eigen::AlignedBox3f inner(grid.box().min() + margin, grid.box().max() - margin);
     std::size_t kept = 0;
-    while (kept < components.parts.size() &&
-           !region.contains(components.parts[kept].box.center().head<2>())) {
-      ++kept;
-    }
+    while (kept < components.parts.size() && !inner.contains(components.parts[kept].box)) ++kept;
     if (kept == components.parts.size()) kept = 0;
     keep_component(components, static_cast<int>(kept), grid);
     return {std::move(grid), components.parts[kept].box};
   }
 
   [[nodiscard]] Shape checked(DistanceGrid grid) const {
-    const Components components = find_components(grid);
+    const Components components = find_standing(kFoot * longest_side(grid.box()), grid);
     refuse_empty_sheet(session_, components);
     refuse_what_stands_there(session_, board_, components);
     keep_component(components, 0, grid);
