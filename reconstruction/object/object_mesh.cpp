@@ -27,8 +27,8 @@ constexpr float kSpaceMargin = 0.05F;  // and where an object is looked for
 constexpr double kMostTexels = 1e6;
 constexpr std::size_t kCoarseViews = 40;  // of the first passes
 constexpr int kCoarseWidth_px = 480;
-constexpr int kCoarsePasses = 3;
-constexpr std::size_t kOneViewIn = 24;   // may be wrong in the last pass,
+constexpr int kCoarsePasses = 5;
+constexpr std::size_t kOneViewIn = 32;   // may be wrong in the last pass,
 constexpr std::size_t kOneGuessIn = 6;   // where the stage is guessed
 constexpr int kCoarseCells = 72;         // along the longest side
 constexpr std::size_t kMostViews = 120;  // of the last pass
@@ -133,7 +133,7 @@ int one_in(std::size_t share, std::size_t views) {
 /// The first passes know the stage badly: they had better find too much than too little, since what
 /// is not found is learned as stage.
 CarvingVotes votes_of_pass(int pass, std::size_t views) {
-  constexpr std::array<std::size_t, kCoarsePasses> shares{8, 12, 20};
+  constexpr std::array<std::size_t, kCoarsePasses> shares{8, 12, 20, 24, 24};
   return {.wrong = one_in(shares[static_cast<std::size_t>(pass)], views),
           .guesses_wrong = one_in(kOneGuessIn, views)};
 }

@@ -25,7 +25,8 @@ constexpr float kRimReach_px = 3;
 constexpr float kLargestStep = 0.5F;  // of an edge, in one round
 constexpr NormalFilter kFilter{.rounds = 8, .turn = 0.35F};
 constexpr DisplacementWeights kWeights{.rims = 1, .smoothness = 1, .stay = 0.02F};
-constexpr int kUntangleRounds = 15;
+constexpr int kUntangleRounds = 24;
+constexpr float kFallbackCell = 1.8F;  // of an edge: as many triangles as remeshing makes
 
 double area_of(const core::Mesh& mesh) {
   double area = 0;
@@ -166,8 +167,14 @@ Surface make_surface_mesh(const SurfaceInputs& inputs, int threads, const WorkPr
     const TriangleTree tree(moved);
     mesh = remesh(moved, surface.edge_m, 2, onto_mesh(tree));
   }
-  if (!untangle(mesh, threads)) {
-    mesh = march_tetrahedra(resampled(inputs.grid, surface.edge_m));  // never crosses itself
+  bool is_simple = untangle(mesh, threads);
+  if (!is_simple) {
+    mesh = remesh(inputs.hull, surface.edge_m, kRemeshRounds, onto_zero(inputs.grid));
+    is_simple = untangle(mesh, threads);
+  }
+  if (!is_simple) {
+    mesh = march_tetrahedra(
+        resampled(inputs.grid, kFallbackCell * surface.edge_m));  // never crosses itself
   }
   surface.confidence =
       confidence_of(mesh, find_rims(inputs.views, inputs.backgrounds, mesh, kRimReach_px, threads));
