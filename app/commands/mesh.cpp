@@ -96,16 +96,16 @@ std::string kept(const std::filesystem::path& file) {
   return fmt::format("kept     {}\n", capture::keep_before(file, "mesh").string());
 }
 
-std::string save(const MeshOptions& options, const core::Mesh& mesh) {
+std::string save(const MeshOptions& options, const reconstruction::ObjectMesh& found) {
   const auto output = output_of(options);
   std::string lines = kept(output);
   if (options.output.empty()) {
     const auto session_file = options.session / "session.json";
     lines += kept(session_file);
-    core::write_ply(output, mesh);
+    core::write_ply(output, found.mesh, found.confidence);
     capture::write_object(session_file, session_file, output.filename().string());
   } else {
-    core::write_ply(output, mesh);
+    core::write_ply(output, found.mesh, found.confidence);
   }
   return lines + fmt::format("written  {}\n", output.string());
 }
@@ -160,7 +160,7 @@ void run_mesh(const MeshOptions& options, const CommandContext& context) {
         sink.progress({step, done, total});
       });
   if (!options.image.empty()) draw_outlines(options, session, found.mesh, images);
-  const std::string lines = save(options, found.mesh);
+  const std::string lines = save(options, found);
   context.publish(to_json(found), describe(found) + lines);
 }
 

@@ -176,12 +176,13 @@ void append_bytes(std::string& bytes, const T& value) {
   bytes.append(raw.data(), raw.size());
 }
 
-std::string header_text(const Mesh& mesh) {
+std::string header_text(const Mesh& mesh, bool has_confidence) {
   std::string text = "ply\nformat binary_little_endian 1.0\n";
   text += "element vertex " + std::to_string(mesh.positions.size()) + "\n";
   for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) {
     text += std::string("property float ") + name + "\n";
   }
+  if (has_confidence) text += "property float confidence\n";
   text += "element face " + std::to_string(mesh.triangles.size()) + "\n";
   text += "property list uchar int vertex_indices\nend_header\n";
   return text;
@@ -217,12 +218,15 @@ MeshFile read_ply(const std::filesystem::path& path) {
   return mesh;
 }
 
-void write_ply(const std::filesystem::path& path, const Mesh& mesh) {
+void write_ply(const std::filesystem::path& path, const Mesh& mesh,
+               std::span<const float> confidence) {
   assert(mesh.normals.size() == mesh.positions.size());
-  std::string bytes = header_text(mesh);
+  assert(confidence.empty() || confidence.size() == mesh.positions.size());
+  std::string bytes = header_text(mesh, !confidence.empty());
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     for (const float value : mesh.positions[i]) append_bytes(bytes, value);
     for (const float value : mesh.normals[i]) append_bytes(bytes, value);
+    if (!confidence.empty()) append_bytes(bytes, confidence[i]);
   }
   for (const auto& triangle : mesh.triangles) {
     append_bytes(bytes, std::uint8_t{3});
