@@ -14,8 +14,8 @@ namespace sheen::capture::synthetic {
 /// white: no colour, no gloss, no texture; only outlines tell its shape.
 enum class SceneKind { matte, mixed, glossy, textured, white };
 
-inline constexpr std::array<std::string_view, 5> kSceneNames{"matte", "mixed", "glossy",
-                                                             "textured", "white"};
+inline constexpr std::array<std::string_view, 5> kSceneNames{"matte", "mixed", "glossy", "textured",
+                                                             "white"};
 std::optional<SceneKind> scene_kind(std::string_view name);
 
 /// What a point of a surface does with light.

@@ -16,8 +16,8 @@ namespace sheen::core {
 MeshFile read_ply(const std::filesystem::path& path);
 
 /// Writes a binary little-endian PLY with normals, beside the final name and then moved into place.
-/// Coordinates are the mesh's own, without its offset. `confidence`, one number per vertex, becomes a
-/// property of that name; it may be empty.
+/// Coordinates are the mesh's own, without its offset. `confidence`, one number per vertex, becomes
+/// a property of that name; it may be empty.
 void write_ply(const std::filesystem::path& path, const Mesh& mesh,
                std::span<const float> confidence = {});
 
