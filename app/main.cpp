@@ -7,6 +7,7 @@
 #include "app/commands/export_command.h"
 #include "app/commands/import.h"
 #include "app/commands/info.h"
+#include "app/commands/mesh.h"
 #include "app/commands/register.h"
 #include "app/commands/render.h"
 #include "app/commands/replay.h"
@@ -46,6 +47,7 @@ int main(int argc, char** argv) {
   app::add_capture_command(program, context);
   app::add_calibrate_command(program, context);
   app::add_survey_command(program, context);
+  app::add_mesh_command(program, context);
   app::add_register_command(program, context);
   app::add_import_command(program, context);
   app::add_replay_command(program, context);

@@ -38,7 +38,7 @@ nlohmann::ordered_json describe_session(const std::filesystem::path& folder) {
     document["board"] = {{"family", board.family}, {"tags", board.tags.size()}};
   }
   if (session.poses) document["poses"] = capture::read_trajectory(*session.poses).entries().size();
-  document["mesh"] = describe(pipeline::read_object_mesh(session.mesh));
+  if (!session.mesh.empty()) document["mesh"] = describe(pipeline::read_object_mesh(session.mesh));
   document["warnings"] = session.warnings;
   return document;
 }
