@@ -152,6 +152,8 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
                                   : nlohmann::ordered_json(median_of(frames.reprojection_px))},
           {"rejections", rejections},
           {"vertex_rejections", vertices},
+          {"coverage", report.coverage ? evaluation::to_json(*report.coverage)
+                                       : nlohmann::ordered_json(nullptr)},
           {"options", report.options}};
 }
 

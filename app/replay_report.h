@@ -3,6 +3,7 @@
 
 #include "capture/pose/board_refinement.h"
 #include "core/diagnostics/stage_timer.h"
+#include "evaluation/coverage/coverage_sectors.h"
 #include "evaluation/views/view_evaluation.h"
 #include "fitting/fitter.h"
 #include "pipeline/frame_statistics.h"
@@ -32,6 +33,8 @@ struct ReplayReport {
       held_out_mean;  ///< of the mean colours, on the same views
   /// Of the fitted representation, with the held-out poses refined against it too.
   std::optional<evaluation::EvaluationSummary> held_out_refined_poses;
+  /// From where the object was seen; where the model has patches.
+  std::optional<evaluation::Coverage> coverage;
   nlohmann::ordered_json options;
 };
 

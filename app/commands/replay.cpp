@@ -90,6 +90,7 @@ ReplayReport describe(const ReplayOptions& options, const Reconstruction& fitted
                       .held_out = {},
                       .held_out_mean = {},
                       .held_out_refined_poses = {},
+                      .coverage = {},
                       .options = std::move(settings)};
   if (const auto* const patches = fitting::as_patches(light_field)) {
     report.patches = patches->patch_count();
@@ -174,6 +175,15 @@ pipeline::ReconstructionOptions completed(const ReplayOptions& options,
   return fit;
 }
 
+/// Where the object was seen from, once the held-out views are measured.
+void add_coverage(const Reconstruction& fitted, ReplayReport& report) {
+  const auto* const patches = fitting::as_patches(fitted.light_field());
+  if (patches == nullptr || patches->observed().size() != fitted.mesh().normals.size()) return;
+  report.coverage = evaluation::measure_coverage(fitted.mesh(), fitted.session().board_from_object,
+                                                 patches->observed(), fitted.frames(),
+                                                 report.held_out ? &*report.held_out : nullptr);
+}
+
 void run_replay(const ReplayOptions& options, const CommandContext& context) {
   // Open everything that may be wrong before the long work.
   context.check_outputs({options.output, options.mean_output, options.poses_output});
@@ -207,6 +217,7 @@ FitOutcome fit_session(const ReplayOptions& options, const capture::Session& ses
     if (live) live->finish();
     ReplayReport report = describe(options, fitted);
     add_held_out(options, fitted, context, report);
+    add_coverage(fitted, report);
     outcome = {to_json(report), to_text(report) + "written  " + options.output.string() + "\n"};
   };
   if (!live) {
