@@ -5,6 +5,7 @@
 #include "app/preview/live_session.h"
 #include "app/preview/run_preview.h"
 #include "app/replay_report.h"
+#include "app/state/session_states.h"
 #include "app/terminal_sink.h"
 #include "capture/pose/trajectory.h"
 #include "capture/source/paced_source.h"
@@ -186,7 +187,8 @@ void add_coverage(const Reconstruction& fitted, ReplayReport& report) {
 
 void run_replay(const ReplayOptions& options, const CommandContext& context) {
   // Open everything that may be wrong before the long work.
-  context.check_outputs({options.output, options.mean_output, options.poses_output});
+  context.check_outputs(
+      {options.output, options.mean_output, options.state_output, options.poses_output});
   if (options.preview) check_display();
   const capture::Session session = capture::open_session(options.session);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
@@ -204,16 +206,23 @@ FitOutcome fit_session(const ReplayOptions& options, const capture::Session& ses
                        std::unique_ptr<capture::FrameSource> frames, const CommandContext& context,
                        const LiveCamera* camera) {
   TerminalSink sink(context);
+  SessionState state(session);
   Reconstruction fitted({.session = session,
                          .frames = std::move(frames),
                          .make_visibility = visibility_factory(options.visibility),
-                         .is_live = camera != nullptr},
+                         .is_live = camera != nullptr,
+                         .on_samples = state.listener()},
                         completed(options, context), sink);
+  if (!options.state_output.empty()) {
+    state.open(options.state_output,
+               {fitted.options().representation, fitted.options().fit, fitted.mesh()});
+  }
   const auto live = make_live_session(options, fitted, camera != nullptr);
   FitOutcome outcome;
   const auto work = [&] {
     fitted.run(sink, live.get());
     save(options, fitted);
+    state.commit();
     if (live) live->finish();
     ReplayReport report = describe(options, fitted);
     add_held_out(options, fitted, context, report);

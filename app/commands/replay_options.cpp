@@ -109,13 +109,20 @@ void add_replay_options(Command command, ReplayOptions& options) {
   add_frame_options(command, fit.frames);
   command.flag("--refine-board", fit.refine_board,
                "Refine where the tags lie from the whole recording before posing frames");
-  command.flag("--preview", options.preview,
-               "Watch it in a window, no faster than it was recorded; the program ends when the "
-               "window is closed");
+  Option preview = command.flag(
+      "--preview", options.preview,
+      "Watch it in a window, no faster than it was recorded; the program ends when the "
+      "window is closed");
   command
       .option("--mean-out", options.mean_output,
               "Also save the mean colours, what a textured mesh would show")
       .type("FILE");
+  const Option state =
+      command
+          .option("--state", options.state_output,
+                  "Also save every view's samples (24 bytes each), for sheen resume, merge, forget")
+          .type("FILE");
+  preview.excludes(state);
   command.option("--poses-out", options.poses_output, "Also save the poses, TUM form").type("FILE");
 }
 
