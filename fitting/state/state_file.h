@@ -30,7 +30,7 @@ struct StateHeader {
   core::Mesh mesh;  ///< a patch per vertex
 };
 
-/// Writes a fit state (docs/formats.md, "state"): every view's samples, bit for bit, 24 bytes each.
+/// Writes a fit state (docs/states.md): every view's samples, bit for bit, 24 bytes each.
 /// They are all that a fit of samples looks at, so views can be joined and left out exactly. It is
 /// written beside its final name.
 class StateWriter {
