@@ -18,7 +18,7 @@ namespace {
 constexpr int kCannotStart = 127;
 
 /// Between fork and exec: what is called here is safe there.
-[[noreturn]] void become(char** argv, int log, pid_t parent) {
+[[noreturn]] void become(const char* program, char** argv, int log, pid_t parent) {
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(kCannotStart);  // it died before it could be watched
   std::signal(SIGINT, SIG_DFL);
@@ -28,15 +28,15 @@ constexpr int kCannotStart = 127;
       dup2(log, STDERR_FILENO) < 0) {
     _exit(kCannotStart);
   }
-  execv("/proc/self/exe", argv);
+  execvp(program, argv);
   _exit(kCannotStart);
 }
 
 }  // namespace
 
-ChildProcess::ChildProcess(const std::vector<std::string>& arguments,
+ChildProcess::ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
                            const std::filesystem::path& log) {
-  std::vector<std::string> words{"sheen"};
+  std::vector<std::string> words{program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -48,7 +48,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments,
   }
   const pid_t parent = getpid();
   process_ = fork();
-  if (process_ == 0) become(argv.data(), file, parent);
+  if (process_ == 0) become(program.c_str(), argv.data(), file, parent);
   close(file);
   handle_ = process_ > 0 ? static_cast<int>(syscall(SYS_pidfd_open, process_, 0)) : -1;
   if (handle_ < 0) {
@@ -56,7 +56,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments,
       kill(process_, SIGTERM);
       waitpid(process_, nullptr, 0);
     }
-    throw core::Error(core::Error::Kind::run_failed, "sheen", "cannot be started once more",
+    throw core::Error(core::Error::Kind::run_failed, program, "cannot be started",
                       "lower --jobs or the number of other programs");
   }
 }

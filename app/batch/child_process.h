@@ -10,12 +10,14 @@
 
 namespace sheen::app {
 
-/// Another run of this program. It is asked to end when its owner goes or dies.
+/// Another program, or another run of this one. It is asked to end when its owner goes or dies.
 class ChildProcess {
  public:
-  /// Starts the program with `arguments`; both streams go to the file `log`. Throws core::Error
-  /// (run_failed). To be called while this process has one thread.
-  ChildProcess(const std::vector<std::string>& arguments, const std::filesystem::path& log);
+  /// Starts `program` (found as a shell finds it) with `arguments`; both streams are added to the
+  /// file `log`. Throws core::Error (run_failed); a program that is not there ends with exit code
+  /// 127. To be called while this process has one thread.
+  ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
+               const std::filesystem::path& log);
   ~ChildProcess();
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&&) = delete;

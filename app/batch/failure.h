@@ -17,7 +17,8 @@ struct Failure {
 /// By name of the session.
 using Failures = std::map<std::string, Failure>;
 
-/// Leaves failed.json in the session's output folder, and what the step said as failed.log.
+/// Leaves failed.json in the session's output folder, and what the step said (`log`; may be empty)
+/// as failed.log.
 void write_failure(const std::filesystem::path& folder, const Failure& failure,
                    const std::filesystem::path& log);
 std::optional<Failure> read_failure(const std::filesystem::path& folder);

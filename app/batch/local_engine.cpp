@@ -58,7 +58,13 @@ class RunningSession {
 
   void start_next() {
     now_.reset();
-    if (!left_.empty()) now_.emplace(work_, left_.front(), threads_);
+    if (left_.empty()) return;
+    try {
+      now_.emplace(work_, left_.front(), threads_);
+    } catch (const core::Error& error) {
+      write_failure(work_.folder(), {std::string(name_of(left_.front())), error.what()}, {});
+      throw;
+    }
   }
   void take_done() {
     left_.pop_front();

@@ -37,7 +37,8 @@ std::string message(int exit_code, const std::filesystem::path& log) {
 StepRun::StepRun(const SessionWork& work, Step step, int threads)
     : work_(work), step_(step), made_from_(work.fingerprint(step)), output_(work.folder_of(step)) {
   std::filesystem::create_directory(output_.path());
-  child_.emplace(work.prepare(step, output_.path(), threads), output_.path() / kLog);
+  child_.emplace("/proc/self/exe", work.prepare(step, output_.path(), threads),
+                 output_.path() / kLog);
 }
 
 StepRun::State StepRun::state() {

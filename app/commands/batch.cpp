@@ -5,6 +5,7 @@
 #include "app/batch/batch_summary.h"
 #include "app/batch/jobs_file.h"
 #include "app/batch/local_engine.h"
+#include "app/batch/slurm_engine.h"
 #include "core/diagnostics/error.h"
 #include "core/files/write_file.h"
 #include "core/text/number.h"
@@ -24,11 +25,23 @@ struct BatchOptions {
   std::filesystem::path jobs_file;
   std::filesystem::path output;
   std::vector<std::string> only;
+  std::optional<int> number;
+  bool on_slurm = false;
+  std::vector<std::string> sbatch_words;
   LocalEngine local;
 };
 
 /// Those that were asked for, of all.
-void choose(const std::vector<std::string>& only, const std::filesystem::path& file, Jobs& jobs) {
+void choose(const std::vector<std::string>& only, std::optional<int> number,
+            const std::filesystem::path& file, Jobs& jobs) {
+  if (number) {
+    if (static_cast<std::size_t>(*number) >= jobs.jobs.size()) {
+      throw core::bad_input(file, fmt::format("names {} sessions", jobs.jobs.size()),
+                            "give a --number below that");
+    }
+    jobs.jobs = {jobs.jobs.at(static_cast<std::size_t>(*number))};
+    return;
+  }
   for (const std::string& name : only) {
     const auto is_it = [&name](const Job& job) { return job.name == name; };
     if (std::none_of(jobs.jobs.begin(), jobs.jobs.end(), is_it)) {
@@ -45,18 +58,23 @@ void choose(const std::vector<std::string>& only, const std::filesystem::path& f
 void run_batch(const BatchOptions& options, const CommandContext& context) {
   // Read what is to be done.
   Jobs jobs = read_jobs(options.jobs_file);
-  choose(options.only, options.jobs_file, jobs);
+  choose(options.only, options.number, options.jobs_file, jobs);
   context.check_outputs({options.output / "batch.html"});
   std::vector<SessionWork> sessions;
   for (const Job& job : jobs.jobs) sessions.emplace_back(jobs, job, options.output / job.name);
 
   // Do it.
-  const Failures failures = run_locally(sessions, options.local, context);
+  const Failures failures = options.on_slurm
+                                ? run_on_slurm(sessions,
+                                               {options.jobs_file, options.output,
+                                                options.sbatch_words, options.local.until},
+                                               context)
+                                : run_locally(sessions, options.local, context);
 
   // Tell. A page of some sessions would hide the others.
   const nlohmann::ordered_json summary = summarise_batch(jobs, sessions, failures);
   std::string text = batch_text(summary);
-  if (options.only.empty()) {
+  if (options.only.empty() && !options.number) {
     const auto page = options.output / "batch.html";
     core::write_file(page, batch_page(summary));
     text += "\nwritten  " + page.string() + "\n";
@@ -93,9 +111,25 @@ void add_batch_command(CommandLine& program, CommandContext& context) {
   std::vector<std::pair<std::string, Step>> steps;
   for (const Step step : kAllSteps) steps.emplace_back(name_of(step), step);
   command.choice("--until", options->local.until, steps, "The last step to run");
-  command.option("--only", options->only, "Only sessions of these names; no page is written")
-      .separated_by(',')
-      .type("NAME,NAME");
+  Option only =
+      command.option("--only", options->only, "Only sessions of these names; no page is written")
+          .separated_by(',')
+          .type("NAME,NAME");
+  const Option number = command
+                            .option("--number", options->number,
+                                    "Only this session, counted from 0; no page is written")
+                            .not_negative()
+                            .type("K");
+  only.excludes(number);
+  Option engine =
+      command.choice<bool>("--engine", options->on_slurm, {{"local", false}, {"slurm", true}},
+                           "local: processes on this machine; slurm: job arrays by sbatch");
+  command
+      .option("--sbatch", options->sbatch_words,
+              "With --engine slurm: an option for sbatch, may be given several times "
+              "(--sbatch=--cpus-per-task=4)")
+      .type("WORD");
+  engine.excludes(only).excludes(number);
   add_common_options(command, context);
   command.action([options, &context] { run_batch(*options, context); });
 }

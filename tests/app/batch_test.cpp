@@ -284,6 +284,7 @@ TEST_F(Batch, RefusesBadFilesWithOneLine) {
   expect_refused("sessions: [a]\nhold_out: 0\nsteps: [replay, evaluate]", "hold_out: 0");
   expect_refused("sessions: [a]\nwanted: {seen: 2}", "seen");
   expect_refused("sessions: ['nowhere/*']", "no sessions");
+  EXPECT_EQ(batch({"--engine", "slurm", "--number", "0"}).exit_code, 2);
   expect_refused("sessions: [{folder: a, name: ../b}]", "name of a folder");
   EXPECT_FALSE(fs::exists(output_));
 }
