@@ -177,6 +177,8 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
           {"rejections", rejections},
           {"findings", findings},
           {"vertex_rejections", vertices},
+          {"coverage", report.coverage ? evaluation::to_json(*report.coverage)
+                                       : nlohmann::ordered_json(nullptr)},
           {"options", report.options}};
 }
 

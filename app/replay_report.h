@@ -3,6 +3,7 @@
 
 #include "capture/pose/board_refinement.h"
 #include "core/diagnostics/stage_timer.h"
+#include "evaluation/coverage/coverage_sectors.h"
 #include "evaluation/views/view_evaluation.h"
 #include "fitting/fitter.h"
 #include "pipeline/evidence/finding.h"
@@ -37,6 +38,8 @@ struct ReplayReport {
   /// Of the fitted representation, with the held-out poses refined against it too.
   std::optional<evaluation::EvaluationSummary> held_out_refined_poses;
   std::vector<pipeline::Finding> findings;  ///< what the data show to be wrong with the recording
+  /// From where the object was seen; where the model has patches.
+  std::optional<evaluation::Coverage> coverage;
   nlohmann::ordered_json options;
 };
 

@@ -73,6 +73,7 @@ void FitStage::observe(const capture::Frame& frame, core::StageTimes& times, Pos
 }
 
 void FitStage::fit(const core::Observation& observation, core::StageTimes& times) {
+  if (parts_.on_samples) parts_.on_samples(observation.frame_index, observation.samples);
   if (aligner_) aligner_->note_integrated(observation.samples);
   if (parts_.mean != nullptr) {
     const auto timing = times.measure("baseline");

@@ -18,6 +18,9 @@ namespace sheen::pipeline {
 
 class CaptureEvidence;
 
+/// Gets a frame's index and its samples as they are integrated.
+using SamplesListener = std::function<void(int frame_index, const core::SampleBatch& samples)>;
+
 /// A view as it was integrated: enough to observe it once more.
 struct IntegratedView {
   int frame_index = 0;
@@ -41,6 +44,7 @@ class FitStage {
     /// Asked before a frame's samples are integrated, on the thread that fits; false keeps them
     /// out. May be empty.
     std::function<bool(const core::SampleBatch&)> admit = {};
+    SamplesListener on_samples = {};
   };
 
   explicit FitStage(Parts parts);

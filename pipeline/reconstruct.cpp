@@ -135,7 +135,8 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
       .evidence = *evidence,
       .hold_out = {options.frames.hold_out},
       .photometric = options.photometric,
-      .admit = [this](const core::SampleBatch& batch) { return admit(batch, listener); }});
+      .admit = [this](const core::SampleBatch& batch) { return admit(batch, listener); },
+      .on_samples = std::move(inputs.on_samples)});
 }
 
 std::unique_ptr<capture::PoseEstimator> Reconstruction::Impl::pose_estimator() const {

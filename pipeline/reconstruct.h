@@ -31,6 +31,8 @@ struct ReconstructionInputs {
   VisibilityFactory make_visibility = {};
   /// The recording is being made: it cannot be looked at before its frames come.
   bool is_live = false;
+  /// Gets every view's samples just as they are fitted, on the thread that fits. May be empty.
+  SamplesListener on_samples = {};
 };
 
 /// Whoever watches frames being fitted, on the thread that fits.
