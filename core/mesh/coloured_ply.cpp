@@ -42,7 +42,8 @@ void write_coloured_ply(const std::filesystem::path& path, const Mesh& mesh,
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
       const float value = mesh.positions[i][axis];
-      lies_far ? append_value(bytes, value + mesh.offset[axis]) : append_value(bytes, value);
+      lies_far ? append_value(bytes, static_cast<double>(value) + mesh.offset[axis])
+               : append_value(bytes, value);
     }
     for (const float value : mesh.normals[i]) append_value(bytes, value);
     for (const float channel : colours[i]) {
