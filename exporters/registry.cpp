@@ -2,6 +2,12 @@
 #include "core/diagnostics/error.h"
 #include "core/text/lower_case.h"
 #include "exporters/format.h"
+#include "exporters/gltf/gltf_format.h"
+#include "exporters/obj/obj_format.h"
+#include "exporters/ply/ply_format.h"
+#include "exporters/splats/splat_ply_format.h"
+#include "exporters/splats/spz_format.h"
+#include "exporters/usd/usd_format.h"
 #include "exporters/viewer/viewer_format.h"
 
 #include <array>
@@ -9,7 +15,9 @@
 namespace sheen::exporters {
 
 std::span<const Format* const> formats() {
-  static constexpr std::array<const Format*, 1> all{&viewer::kFormat};
+  static constexpr std::array<const Format*, 7> all{
+      &viewer::kFormat, &gltf::kFormat,   &obj::kFormat, &ply::kFormat,
+      &usd::kFormat,    &kSplatPlyFormat, &kSpzFormat};
   return all;
 }
 

@@ -2,8 +2,10 @@
 #include "app/commands/export_command.h"
 
 #include "app/commands/export_cost.h"
+#include "app/commands/export_dataset.h"
 #include "app/commands/frame_options.h"
 #include "app/commands/table_options.h"
+#include "core/diagnostics/error.h"
 #include "exporters/format.h"
 #include "fitting/model_file/model_file.h"
 
@@ -14,11 +16,12 @@ namespace sheen::app {
 namespace {
 
 struct ExportOptions {
-  std::filesystem::path model;
+  std::filesystem::path source;  ///< a model, or a session
   std::filesystem::path output;
   fitting::OptionValues given;    ///< of the format
   std::filesystem::path session;  ///< whose views the conversion is measured on; empty: none
   pipeline::FrameChoice frames;
+  DatasetExport dataset;  ///< where the source is a session
 };
 
 /// The settings of all formats, which the help names by their endings.
@@ -30,16 +33,21 @@ std::vector<OwnedOption> format_options() {
   return known;
 }
 
-void run_export(const ExportOptions& options, const CommandContext& context) {
+void export_model(const ExportOptions& options, const CommandContext& context) {
   // Settle what is asked for.
   const exporters::Format& format = exporters::format_of(options.output);
   const auto settings = format.default_options();
   fitting::apply(options.given, format.name, settings->table());
   settings->check();
   context.check_outputs({options.output});
+  std::error_code absent;
+  if (std::filesystem::equivalent(options.source, options.output, absent)) {
+    throw core::bad_input(options.output, "is the model itself, which holds more than any export",
+                          "choose another name for the file");
+  }
 
   // Convert.
-  const fitting::Model model = fitting::read_model(options.model);
+  const fitting::Model model = fitting::read_model(options.source);
   const exporters::Written written = format.write(model, options.output, *settings);
 
   // Report.
@@ -61,19 +69,38 @@ void run_export(const ExportOptions& options, const CommandContext& context) {
   context.publish(document, text);
 }
 
+void run_export(const ExportOptions& options, const CommandContext& context) {
+  const bool is_session = std::filesystem::is_directory(options.source);
+  if (is_session) {
+    export_dataset(options.source, options.output, options.dataset, options.frames, context);
+    return;
+  }
+  if (!options.dataset.format.empty() || options.dataset.undistort) {
+    throw UsageError("--format and --undistort are for sessions, " + options.source.string() +
+                     " is no folder");
+  }
+  export_model(options, context);
+}
+
 }  // namespace
 
 void add_export_command(CommandLine& program, CommandContext& context) {
   auto options = std::make_shared<ExportOptions>();
-  Command command = program.command("export", "Write a model for other programs");
-  std::string formats = "The ending says what is written:\n";
+  Command command =
+      program.command("export", "Write a model, or a session as a data set, for other programs");
+  std::string formats = "A model becomes a file, whose ending says what is written:\n";
   for (const exporters::Format* format : exporters::formats()) {
     formats += fmt::format("  {:<12}{}\n", fmt::join(format->endings, ", "), format->sentence);
   }
-  command.example(formats +
-                  "Example:\n  sheen export model.glb -o viewer.html --title \"My vase\"");
-  command.option("model", options->model, "Model file (.glb)").required();
-  command.option("-o,--output", options->output, "File to write").required().type("FILE");
+  command.example(formats + dataset_formats_help() +
+                  "Examples:\n  sheen export model.glb -o viewer.html --title \"My vase\"\n"
+                  "  sheen export SESSION -o DIR --format nerfstudio --undistort");
+  command.option("source", options->source, "Model file (.glb), or a session's folder").required();
+  command.option("-o,--output", options->output, "File or folder to write").required().type("FILE");
+  command.option("--format", options->dataset.format, "Of a session's data set")
+      .one_of(written_dataset_formats());
+  command.flag("--undistort", options->dataset.undistort,
+               "Images of a data set as a camera without distortion would have taken them");
   command
       .option("--views", options->session,
               "Also measure what the conversion costs on the views of this session")

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/import.h"
 
+#include "capture/calibration/camera_file.h"
+#include "capture/dataset/dataset_formats.h"
 #include "capture/dataset/import_session.h"
 
 #include <fmt/format.h>
@@ -13,23 +15,38 @@ struct ImportOptions {
   std::filesystem::path images;
   std::filesystem::path mesh;
   std::filesystem::path session;
+  std::filesystem::path camera;  ///< in place of the data set's; empty: none
   double metres_per_unit = 1;
+  std::vector<double> known_distance;  ///< units of the poses, metres; empty: none
+  bool mesh_has_unit = false;
 };
 
-/// Names in transforms.json are relative to it; COLMAP's are relative to an image folder.
-std::filesystem::path folder_of_images(const ImportOptions& options) {
-  if (!options.images.empty()) return options.images;
-  if (!std::filesystem::is_directory(options.dataset)) return options.dataset.parent_path();
-  if (std::filesystem::exists(options.dataset / "transforms.json")) return options.dataset;
-  return options.dataset / "images";
+double metres_per_unit(const ImportOptions& options) {
+  if (options.known_distance.empty()) return options.metres_per_unit;
+  if (!(options.known_distance[0] > 0) || !(options.known_distance[1] > 0)) {
+    throw UsageError("--known-distance takes a distance in units of the poses and in metres");
+  }
+  return options.known_distance[1] / options.known_distance[0];
+}
+
+/// The data set, by the camera that the user names where one is named.
+capture::Dataset read_dataset(const ImportOptions& options, const std::filesystem::path& images) {
+  capture::Dataset dataset = capture::read_dataset(options.dataset, images);
+  if (options.camera.empty()) return dataset;
+  dataset.cameras = {capture::read_camera(options.camera)};
+  for (capture::DatasetFrame& frame : dataset.frames) frame.camera = 0;
+  return dataset;
 }
 
 void run_import(const ImportOptions& options, const CommandContext& context) {
   context.check_outputs({options.session});
-  const capture::SessionImport import{.dataset = capture::read_dataset(options.dataset),
-                                      .images = folder_of_images(options),
+  const std::filesystem::path images =
+      options.images.empty() ? capture::images_of_dataset(options.dataset) : options.images;
+  const capture::SessionImport import{.dataset = read_dataset(options, images),
+                                      .images = images,
                                       .mesh = options.mesh,
-                                      .metres_per_unit = options.metres_per_unit};
+                                      .metres_per_unit = metres_per_unit(options),
+                                      .mesh_has_unit = options.mesh_has_unit};
   capture::write_imported_session(import, options.session);
   const std::size_t count = import.dataset.frames.size();
   context.publish({{"session", options.session.string()}, {"frames", count}},
@@ -42,16 +59,23 @@ void add_import_command(CommandLine& program, CommandContext& context) {
   auto options = std::make_shared<ImportOptions>();
   Command command =
       program.command("import", "Make a session of images that another program has posed");
+  std::string formats;
+  for (const capture::DatasetFormat* format : capture::dataset_formats()) {
+    formats += fmt::format("  {:<12}{}\n", format->name, format->sentence);
+  }
   command.example(
       "Examples:\n"
-      "  sheen import CAPTURE/transforms.json --mesh object.ply -o SESSION    nerfstudio, "
-      "instant-ngp\n"
-      "  sheen import PROJECT --mesh object.ply --scale 0.1 -o SESSION        COLMAP, a unit is "
-      "10 cm\n"
+      "  sheen import CAPTURE/transforms.json --mesh object.ply -o SESSION\n"
+      "  sheen import PROJECT --mesh object.ply --scale 0.1 -o SESSION        a unit is 10 cm\n"
+      "  sheen import bundle.out --mesh mesh.ply --known-distance 2.31 0.08 --scale-mesh -o "
+      "SESSION\n"
+      "Formats:\n" +
+      formats +
       "The mesh has the axes of the poses and is in metres; sheen register improves its place.");
   command
       .option("dataset", options->dataset,
-              "transforms.json, or a folder with one or with a COLMAP model (text or binary)")
+              "transforms.json, bundle.out, cameras.xml, or a folder with a transforms.json or a "
+              "COLMAP model")
       .type("DATASET")
       .required();
   command.option("--mesh", options->mesh, "the object: PLY, OBJ or GLB in metres")
@@ -62,9 +86,22 @@ void add_import_command(CommandLine& program, CommandContext& context) {
       .required();
   command.option("--images", options->images, "the folder that the images' names are relative to")
       .type("FOLDER");
-  command.option("--scale", options->metres_per_unit, "metres per unit of the poses")
-      .positive()
-      .show_default();
+  command
+      .option("--camera", options->camera,
+              "the camera, in place of the data set's: of OpenCV, ROS (camera_info), Kalibr "
+              "(camchain), Agisoft")
+      .type("FILE");
+  const Option scale =
+      command.option("--scale", options->metres_per_unit, "metres per unit of the poses")
+          .positive()
+          .show_default();
+  command
+      .option("--known-distance", options->known_distance,
+              "a distance in units of the poses and in metres, in place of --scale")
+      .numbers(2)
+      .excludes(scale);
+  command.flag("--scale-mesh", options->mesh_has_unit,
+               "the mesh is in the unit of the poses, too: scale it with them");
   add_common_options(command, context);
   command.action([options, &context] { run_import(*options, context); });
 }

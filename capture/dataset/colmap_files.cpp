@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <string_view>
@@ -41,8 +42,8 @@ constexpr std::array kColmapLenses{
     ColmapLens{8, "SIMPLE_RADIAL_FISHEYE", 1, 1, kFisheye},
     ColmapLens{9, "RADIAL_FISHEYE", 1, 2, kFisheye},
 };
-constexpr std::size_t kFullOpenCv = 6;
-constexpr std::size_t kOpenCvFisheye = 5;
+// Places in the table of those that are written.
+constexpr std::size_t kPinhole = 1, kOpenCv = 4, kOpenCvFisheye = 5, kFullOpenCv = 6;
 
 [[noreturn]] void refuse_lens(const Path& path, const std::string& name) {
   throw core::bad_input(path, "has a camera of the model " + core::quotable(name),
@@ -223,8 +224,13 @@ void read_binary_images(const Path& path, const CameraIndices& indices, Dataset&
 }
 
 const ColmapLens& lens_of(const core::CameraModel& camera) {
-  const bool is_fisheye = camera.intrinsics().lens == core::LensKind::fisheye;
-  return kColmapLenses[is_fisheye ? kOpenCvFisheye : kFullOpenCv];
+  if (camera.intrinsics().lens == core::LensKind::fisheye) return kColmapLenses[kOpenCvFisheye];
+  // Many programs know the smaller ones only.
+  const auto& k = camera.intrinsics().distortion;
+  const auto used = std::find_if(k.rbegin(), k.rend(), [](double value) { return value != 0; });
+  const auto count = static_cast<std::size_t>(k.rend() - used);
+  if (count == 0) return kColmapLenses[kPinhole];
+  return kColmapLenses[count <= 4 ? kOpenCv : kFullOpenCv];
 }
 
 /// In the order of FULL_OPENCV or OPENCV_FISHEYE, which is that of the coefficients.
@@ -307,6 +313,31 @@ void write_binary(const Path& folder, const Dataset& dataset) {
   core::write_file(folder / "points3D.bin", points);
 }
 
+std::optional<Path> find_colmap_model(const Path& path) {
+  for (const char* place : {"", "sparse/0", "sparse", "colmap/sparse/0"}) {
+    for (const char* name : {"cameras.bin", "cameras.txt"}) {
+      if (std::filesystem::exists(path / place / name)) return path / place;
+    }
+  }
+  return std::nullopt;
+}
+
+Dataset read_named_model(const Path& folder, const Path& /*images*/) {
+  return read_colmap_model(folder);
+}
+
+template <ColmapForm form>
+void write_into_project(const Path& folder, const Dataset& dataset) {
+  const Path model = folder / "sparse" / "0";
+  std::filesystem::create_directories(model);
+  // Names of images are relative to the folder images/ there.
+  Dataset named = dataset;
+  for (DatasetFrame& frame : named.frames) {
+    frame.image = Path(frame.image).lexically_relative("images").generic_string();
+  }
+  write_colmap_model(model, named, form);
+}
+
 }  // namespace
 
 Dataset read_colmap_model(const Path& folder) {
@@ -325,5 +356,16 @@ Dataset read_colmap_model(const Path& folder) {
 void write_colmap_model(const Path& folder, const Dataset& dataset, ColmapForm form) {
   form == ColmapForm::text ? write_text(folder, dataset) : write_binary(folder, dataset);
 }
+
+constinit const DatasetFormat kColmapFormat{.name = "colmap",
+                                            .sentence = "COLMAP, 3DGS: images and a binary model",
+                                            .find = find_colmap_model,
+                                            .read = read_named_model,
+                                            .write = write_into_project<ColmapForm::binary>};
+constinit const DatasetFormat kColmapTextFormat{.name = "colmap-text",
+                                                .sentence = "the same with a model of text files",
+                                                .find = find_colmap_model,
+                                                .read = read_named_model,
+                                                .write = write_into_project<ColmapForm::text>};
 
 }  // namespace sheen::capture

@@ -19,6 +19,8 @@ struct DatasetFrame {
   std::size_t camera = 0;  ///< index into Dataset::cameras
   Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();  ///< x right, y down
   std::optional<double> sharpness{};  ///< as instant-ngp has it: any unit, larger is sharper
+  std::string mask{};                 ///< image of what counts, like `image`; empty: all of it
+  bool is_held_out = false;           ///< kept for comparisons; written, not read
 };
 
 /// A coloured point of the surface, from which other programs begin.
@@ -36,6 +38,7 @@ struct Dataset {
   std::vector<core::CameraModel> cameras;
   std::vector<DatasetFrame> frames;  ///< in the files' order
   std::vector<DatasetPoint> points;  ///< written, not read: an import brings its mesh
+  std::string surface{};             ///< PLY file that has the points, too; empty: none
 };
 
 /// No honest description of a capture is larger; what is larger is refused unread.

@@ -2,12 +2,11 @@
 #include "capture/dataset/import_session.h"
 
 #include "capture/calibration/camera_file.h"
-#include "capture/dataset/colmap_files.h"
-#include "capture/dataset/transforms_file.h"
 #include "capture/pose/trajectory.h"
 #include "capture/session/session_file.h"
 #include "core/diagnostics/error.h"
 #include "core/files/staged_output.h"
+#include "core/mesh/read_mesh.h"
 #include "core/text/lower_case.h"
 
 #include <fmt/format.h>
@@ -33,19 +32,22 @@ std::string common_ending(const Dataset& dataset, const fs::path& folder) {
   return core::lower_case(first);
 }
 
-}  // namespace
-
-Dataset read_dataset(const fs::path& path) {
-  if (!fs::is_directory(path)) return read_transforms(path);
-  if (fs::exists(path / "transforms.json")) return read_transforms(path / "transforms.json");
-  for (const char* place : {"", "sparse/0", "sparse", "colmap/sparse/0"}) {
-    for (const char* name : {"cameras.bin", "cameras.txt"}) {
-      if (fs::exists(path / place / name)) return read_colmap_model(path / place);
-    }
+/// Copies the mesh, or writes it in metres. Returns its name.
+std::string put_mesh(const SessionImport& import, const fs::path& folder) {
+  if (!import.mesh_has_unit || import.metres_per_unit == 1) {
+    const std::string name = "object" + core::lower_case(import.mesh.extension().string());
+    copy_into_session(import.mesh, folder / name);
+    return name;
   }
-  throw core::bad_input(path, "holds neither a transforms.json nor a COLMAP model",
-                        "name the folder that holds cameras.txt or cameras.bin");
+  core::Mesh mesh = core::read_mesh(import.mesh);
+  for (Eigen::Vector3f& position : mesh.positions) {
+    position = (import.metres_per_unit * (position.cast<double>() + mesh.offset)).cast<float>();
+  }
+  core::write_ply(folder / "object.ply", mesh);
+  return "object.ply";
 }
+
+}  // namespace
 
 void write_imported_session(const SessionImport& import, const fs::path& folder) {
   Dataset dataset = import.dataset;
@@ -60,7 +62,6 @@ void write_imported_session(const SessionImport& import, const fs::path& folder)
   std::sort(dataset.frames.begin(), dataset.frames.end(),
             [](const auto& a, const auto& b) { return a.image < b.image; });
   const std::string ending = common_ending(dataset, import.images);
-  const std::string mesh = "object" + core::lower_case(import.mesh.extension().string());
 
   core::StagedOutput staged(folder);
   fs::create_directories(staged.path() / "images");
@@ -73,7 +74,7 @@ void write_imported_session(const SessionImport& import, const fs::path& folder)
     pose.translation() *= import.metres_per_unit;
     poses.push_back({static_cast<double>(i), pose});
   }
-  copy_into_session(import.mesh, staged.path() / mesh);
+  const std::string mesh = put_mesh(import, staged.path());
   write_camera(staged.path() / "camera.yaml", dataset.cameras.front());
   write_trajectory(staged.path() / "poses.txt", poses);
   write_session_file(staged.path(),

@@ -7,16 +7,13 @@
 
 namespace sheen::capture {
 
-/// Reads a data set: a transforms.json, or a folder that has one or a COLMAP model (itself, or in
-/// sparse/0, sparse or colmap/sparse/0). Throws core::Error (bad_input).
-Dataset read_dataset(const std::filesystem::path& path);
-
 /// What a session is made of.
 struct SessionImport {
   Dataset dataset;
   std::filesystem::path images;  ///< the folder that the frames' names are relative to
   std::filesystem::path mesh;    ///< in the data set's axes and, like sessions' meshes, in metres
   double metres_per_unit = 1;    ///< of the data set's poses
+  bool mesh_has_unit = false;    ///< the mesh is in the unit of the poses, not in metres
 };
 
 /// Writes a session folder: images copied and numbered in the order of their names, camera, poses,

@@ -177,6 +177,35 @@ ordered_json camera_keys(const core::CameraModel& camera, const Path& path) {
   return keys;
 }
 
+/// nerfstudio takes every tenth frame for comparisons unless it is told which.
+void add_split(const Dataset& dataset, ordered_json& file) {
+  ordered_json fitted = ordered_json::array();
+  ordered_json held_out = ordered_json::array();
+  for (const DatasetFrame& frame : dataset.frames) {
+    (frame.is_held_out ? held_out : fitted).push_back(frame.image);
+  }
+  if (held_out.empty()) return;
+  file["train_filenames"] = fitted;
+  file["val_filenames"] = held_out;
+  file["test_filenames"] = held_out;
+}
+
+std::optional<Path> find_transforms(const Path& path) {
+  if (std::filesystem::is_directory(path)) {
+    const Path inside = path / "transforms.json";
+    return std::filesystem::exists(inside) ? std::optional(inside) : std::nullopt;
+  }
+  return path.extension() == ".json" ? std::optional(path) : std::nullopt;
+}
+
+Dataset read_transforms_alone(const Path& path, const Path& /*images*/) {
+  return read_transforms(path);
+}
+
+void write_transforms_into(const Path& folder, const Dataset& dataset) {
+  write_transforms(folder / "transforms.json", dataset);
+}
+
 }  // namespace
 
 Dataset read_transforms(const Path& path) {
@@ -220,11 +249,16 @@ void write_transforms(const Path& path, const Dataset& dataset) {
   if (is_fisheye) file["is_fisheye"] = true;
   const bool has_one = dataset.cameras.size() == 1;
   if (has_one) file.update(camera_keys(dataset.cameras.front(), path));
+  if (!dataset.surface.empty()) file["ply_file_path"] = dataset.surface;
+  const bool has_masks = std::all_of(dataset.frames.begin(), dataset.frames.end(),
+                                     [](const auto& frame) { return !frame.mask.empty(); });
+  add_split(dataset, file);
   file["frames"] = ordered_json::array();
   for (const DatasetFrame& frame : dataset.frames) {
     ordered_json entry{{"file_path", frame.image}};
     if (!has_one) entry.update(camera_keys(dataset.cameras.at(frame.camera), path));
     if (frame.sharpness) entry["sharpness"] = *frame.sharpness;
+    if (has_masks) entry["mask_path"] = frame.mask;
     Eigen::Matrix4d pose = frame.world_from_camera.matrix();
     pose.middleCols<2>(1) *= -1;
     for (int row = 0; row < 4; ++row) {
@@ -234,5 +268,12 @@ void write_transforms(const Path& path, const Dataset& dataset) {
   }
   core::write_file(path, file.dump(1) + "\n");
 }
+
+constinit const DatasetFormat kNerfstudioFormat{
+    .name = "nerfstudio",
+    .sentence = "nerfstudio, instant-ngp: images and transforms.json",
+    .find = find_transforms,
+    .read = read_transforms_alone,
+    .write = write_transforms_into};
 
 }  // namespace sheen::capture

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "capture/dataset/dataset.h"
+#include "capture/dataset/dataset_formats.h"
 
 #include <filesystem>
 
@@ -14,8 +14,13 @@ namespace sheen::capture {
 /// frame and key: other camera models, poses that are not rigid, images outside the folder.
 Dataset read_transforms(const std::filesystem::path& path);
 
-/// Writes `path`, a transforms.json that `read_transforms` reads back exactly, without points.
-/// Lenses that the form cannot hold (k4 to k6 of a rational one) throw core::Error (bad_input).
+/// Writes `path`, a transforms.json that `read_transforms` reads back exactly; points by the name
+/// of the file that has them, masks where all frames have one, lists of held-out frames where some
+/// are. Lenses that the form cannot hold (k4 to k6 of a rational one) throw core::Error
+/// (bad_input).
 void write_transforms(const std::filesystem::path& path, const Dataset& dataset);
+
+/// A transforms.json beside its images.
+extern const DatasetFormat kNerfstudioFormat;
 
 }  // namespace sheen::capture

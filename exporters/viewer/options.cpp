@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "exporters/viewer/options.h"
 
+#include "exporters/upright.h"
+
 #include <string>
 
 namespace sheen::exporters::viewer {
@@ -14,10 +16,7 @@ bool is_colour(const std::string& text) {
 }  // namespace
 
 void Options::check() const {
-  const bool is_axis = up.size() == 1 || (up.size() == 2 && up.front() == '-');
-  if (!is_axis || std::string("xyz").find(up.back()) == std::string::npos) {
-    fitting::refuse_value("up", up, "x|y|z|-x|-y|-z");
-  }
+  check_up(up);
   if (background != "dark" && background != "light" && !is_colour(background)) {
     fitting::refuse_value("background", background, "dark, light or a colour such as #204060");
   }
@@ -32,7 +31,7 @@ fitting::OptionTable option_table(Options& options) {
   return {text("title", "TEXT", "Title of the page (default: the file's name)", options.title),
           text("background", "dark|light|#rrggbb", "Background that the page opens with",
                options.background),
-          text("up", "x|y|z|-x|-y|-z", "Axis of the object that points upwards", options.up),
+          up_option(options.up),
           text("poster", "FILE.png",
                "Picture that is shown until the model is there, and where it cannot be drawn",
                options.poster)};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "capture/dataset/colmap_files.h"
+#include "capture/dataset/dataset_formats.h"
 #include "capture/dataset/import_session.h"
 #include "capture/dataset/transforms_file.h"
 #include "capture/pose/trajectory.h"
@@ -231,7 +232,7 @@ TEST(Dataset, ImportMakesASessionInTheOrderOfNames) {
   }
   write_file(folder.path() / "mesh.ply", "mesh");
   write_transforms(folder.path() / "transforms.json", dataset);
-  SessionImport import{.dataset = read_dataset(folder.path()),
+  SessionImport import{.dataset = read_dataset(folder.path(), {}),
                        .images = folder.path(),
                        .mesh = folder.path() / "mesh.ply",
                        .metres_per_unit = 0.5};
@@ -271,9 +272,10 @@ TEST(Dataset, RealSessionComesBackFromColmap) {
   for (const ColmapForm form : {ColmapForm::text, ColmapForm::binary}) {
     write_colmap_model(folder.path(), dataset, form);
     const auto target = folder.path() / (form == ColmapForm::text ? "text" : "binary");
-    write_imported_session(
-        {.dataset = read_dataset(folder.path()), .images = temple / "images", .mesh = session.mesh},
-        target);
+    write_imported_session({.dataset = read_dataset(folder.path(), {}),
+                            .images = temple / "images",
+                            .mesh = session.mesh},
+                           target);
     const Session read = open_session(target);
     EXPECT_EQ(read.camera.intrinsics().distortion, session.camera.intrinsics().distortion);
     EXPECT_LT(

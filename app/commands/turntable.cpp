@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "app/commands/turntable.h"
+
+#include "app/preview/orbit_camera.h"
+#include "app/terminal_sink.h"
+#include "capture/files/video_writer.h"
+#include "core/image/write_image.h"
+#include "core/text/lower_case.h"
+#include "core/text/number.h"
+#include "exporters/upright.h"
+#include "fitting/model_file/model_file.h"
+#include "render/renderer.h"
+
+#include <fmt/format.h>
+#include <opencv2/imgproc.hpp>
+
+#include <algorithm>
+#include <charconv>
+
+namespace sheen::app {
+namespace {
+
+constexpr int kFiner = 2;  // drawn so much larger, so that outlines become smooth
+constexpr int kLeastSide_px = 16, kMostSide_px = 8192;
+const cv::Scalar kDark(0x22, 0x1e, 0x1c);
+const cv::Scalar kLight(0xf4, 0xf3, 0xf2);
+
+/// A lens that sees all of the object whatever the picture's shape.
+core::CameraModel turntable_lens(const cv::Size& size_px) {
+  const int side = std::min(size_px.width, size_px.height);
+  core::CameraModel::Intrinsics intrinsics = OrbitCamera::lens(side, side).intrinsics();
+  intrinsics.width_px = size_px.width;
+  intrinsics.height_px = size_px.height;
+  intrinsics.principal_px = {0.5 * (size_px.width - 1), 0.5 * (size_px.height - 1)};
+  return core::CameraModel(intrinsics);
+}
+
+/// CV_8UC4, B G R A, not premultiplied.
+cv::Mat with_alpha(const render::RenderedView& view, const cv::Size& size_px) {
+  // Averages of the object's pixels alone: black beside it must not darken the outline.
+  cv::Mat colours;
+  cv::Mat covered;
+  cv::resize(view.image, colours, size_px, 0, 0, cv::INTER_AREA);
+  cv::resize(view.mask, covered, size_px, 0, 0, cv::INTER_AREA);
+  cv::Mat picture(size_px, CV_8UC4, cv::Scalar::all(0));
+  for (int y = 0; y < size_px.height; ++y) {
+    for (int x = 0; x < size_px.width; ++x) {
+      const int alpha = covered.at<std::uint8_t>(y, x);
+      if (alpha == 0) continue;
+      auto& pixel = picture.at<cv::Vec4b>(y, x);
+      for (int channel = 0; channel < 3; ++channel) {
+        const int value = colours.at<cv::Vec3b>(y, x)[channel] * 255 / alpha;
+        pixel[channel] = static_cast<std::uint8_t>(std::min(value, 255));
+      }
+      pixel[3] = static_cast<std::uint8_t>(alpha);
+    }
+  }
+  return picture;
+}
+
+cv::Mat over(const cv::Mat& picture, const cv::Scalar& background) {
+  cv::Mat result(picture.size(), CV_8UC3);
+  for (int y = 0; y < picture.rows; ++y) {
+    for (int x = 0; x < picture.cols; ++x) {
+      const auto& pixel = picture.at<cv::Vec4b>(y, x);
+      for (int channel = 0; channel < 3; ++channel) {
+        const double mixed =
+            (pixel[channel] * pixel[3] + background[channel] * (255 - pixel[3])) / 255;
+        result.at<cv::Vec3b>(y, x)[channel] = cv::saturate_cast<std::uint8_t>(mixed);
+      }
+    }
+  }
+  return result;
+}
+
+bool is_video(const std::filesystem::path& path) {
+  return core::lower_case(path.extension().string()) == ".mp4";
+}
+
+}  // namespace
+
+cv::Size picture_size(const std::string& text) {
+  const auto side = [](const std::string& word) {
+    const long long number = core::parse_whole_number(word).value_or(0);
+    return number >= kLeastSide_px && number <= kMostSide_px ? static_cast<int>(number) : 0;
+  };
+  const std::size_t times = std::min(text.find('x'), text.size());
+  const cv::Size size(side(text.substr(0, times)),
+                      side(text.substr(std::min(times + 1, text.size()))));
+  if (size.empty()) {
+    throw UsageError("--size is '" + text + "', allowed: WIDTHxHEIGHT, each 16 to 8192");
+  }
+  return size;
+}
+
+std::optional<cv::Scalar> background_colour(const std::string& text) {
+  if (text == "none") return std::nullopt;
+  if (text == "dark") return kDark;
+  if (text == "light") return kLight;
+  unsigned value = 0;
+  const char* const end = text.data() + text.size();
+  const bool is_colour = text.size() == 7 && text.front() == '#' &&
+                         std::from_chars(text.data() + 1, end, value, 16).ptr == end;
+  if (!is_colour) {
+    throw UsageError("--background is '" + text +
+                     "', allowed: none, dark, light or a colour such as #204060");
+  }
+  return cv::Scalar(value & 255u, value >> 8 & 255u, value >> 16);
+}
+
+void render_turntable(const std::filesystem::path& path, const std::filesystem::path& output,
+                      const TurntableOptions& options, const CommandContext& context) {
+  const bool to_video = is_video(output);
+  if (to_video && (options.size_px.width % 2 != 0 || options.size_px.height % 2 != 0)) {
+    throw UsageError("--size of a video must be even in both directions");
+  }
+  context.check_outputs({to_video ? output : std::filesystem::path()});
+  const fitting::Model model = fitting::read_model(path);
+  const auto gl = render::make_osmesa_context();
+  const auto renderer = render::make_renderer(*gl, model.mesh, *model.light_field, context.threads);
+  const Eigen::Vector3f up = exporters::y_up_from_object(options.up).row(1);
+  OrbitCamera camera(model.mesh, up.cast<double>());
+  const core::CameraModel lens = turntable_lens(options.size_px * kFiner);
+  std::optional<capture::VideoWriter> video;
+  if (to_video) video.emplace(output, options.size_px, options.fps);
+
+  TerminalSink sink(context);
+  for (int i = 0; i < options.pictures; ++i) {
+    const auto view = renderer->render(lens, camera.camera_from_object());
+    const cv::Mat picture = with_alpha(view, options.size_px);
+    if (video) {
+      video->add(over(picture, options.background.value_or(kDark)));
+    } else {
+      core::write_image(output / fmt::format("{:04d}.png", i),
+                        options.background ? over(picture, *options.background) : picture);
+    }
+    camera.orbit({2.0 / options.pictures, 0}, 1);  // an image's height is half a turn
+    sink.progress({"rendering", i + 1, options.pictures});
+  }
+  if (video) video->finish();
+  context.publish({{"pictures", options.pictures}, {"output", output.string()}},
+                  fmt::format("written  {} pictures to {}\n", options.pictures, output.string()));
+}
+
+}  // namespace sheen::app
