@@ -116,7 +116,7 @@ std::string splat_bytes(const std::filesystem::path& path, const Splats& splats)
     rotations[i] = splat.rotation.coeffs();  // x y z w
     opacities[i] = splat.opacity;
     const Eigen::Vector3f linear = splat.mean_colour().unaryExpr(&linear_from_srgb);
-    colours[i] << linear, splat.opacity;
+    colours[i] = {linear.x(), linear.y(), linear.z(), splat.opacity};
   }
   const auto add = [&](const auto& values, const char* type) {
     return add_numbers(builder, values, fitting::kFloat, type);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/depth_quads/quad_grid.h"
 
+#include <opencv2/core.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>

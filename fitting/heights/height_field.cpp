@@ -47,7 +47,7 @@ HeightField::HeightField(const core::Mesh& mesh)
     }
   }
   std::ranges::sort(pairs);
-  pairs.erase(std::ranges::unique(pairs).begin(), pairs.end());
+  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
   for (const auto& [first, second] : pairs) {
     const float length_m = (position[first] - position[second]).norm();
     if (length_m > 0.0f) edges_.push_back({first, second, length_m});
