@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: MIT
+#include "app/commands/batch.h"
 #include "app/commands/board.h"
 #include "app/commands/calibrate.h"
 #include "app/commands/capture.h"
 #include "app/commands/compare.h"
 #include "app/commands/evaluate.h"
 #include "app/commands/export_command.h"
+#include "app/commands/forget.h"
 #include "app/commands/import.h"
 #include "app/commands/info.h"
+#include "app/commands/mesh.h"
+#include "app/commands/merge.h"
 #include "app/commands/register.h"
 #include "app/commands/render.h"
 #include "app/commands/replay.h"
+#include "app/commands/resume.h"
 #include "app/commands/survey.h"
 #include "app/commands/synth.h"
 #include "app/commands/view.h"
@@ -46,13 +51,18 @@ int main(int argc, char** argv) {
   app::add_capture_command(program, context);
   app::add_calibrate_command(program, context);
   app::add_survey_command(program, context);
+  app::add_mesh_command(program, context);
   app::add_register_command(program, context);
   app::add_import_command(program, context);
   app::add_replay_command(program, context);
+  app::add_resume_command(program, context);
+  app::add_merge_command(program, context);
+  app::add_forget_command(program, context);
   app::add_render_command(program, context);
   app::add_evaluate_command(program, context);
   app::add_export_command(program, context);
   app::add_compare_command(program, context);
+  app::add_batch_command(program, context);
   app::add_synth_command(program, context);
   app::add_info_command(program, context);
   app::add_view_command(program, context);

@@ -71,6 +71,24 @@ nlohmann::ordered_json board_json(const std::optional<capture::BoardRefinement>&
           {"median_shift_mm", 1000 * board->median_shift_m}};
 }
 
+nlohmann::ordered_json mesh_json(const std::optional<pipeline::MeshRefinement>& mesh) {
+  if (!mesh) return nullptr;
+  return {{"accepted", mesh->is_accepted},
+          {"median_mm", mesh->median_mm},
+          {"residual_change", mesh->residual_change},
+          {"views", mesh->views},
+          {"check_views", mesh->check_views}};
+}
+
+std::string mesh_text(const pipeline::MeshRefinement& mesh) {
+  if (mesh.is_accepted) {
+    return fmt::format("mesh     refined: median {:.2g} mm, residual on check views {:+.1f} %\n",
+                       mesh.median_mm, 100 * mesh.residual_change);
+  }
+  return fmt::format("mesh     kept: residual on check views would change by {:+.1f} %\n",
+                     100 * mesh.residual_change);
+}
+
 std::string held_out_row(const std::string& name, const evaluation::EvaluationSummary& summary) {
   return fmt::format("  {:<22}{:>8.2f} dB{:>8.4f}{:>9.4f}\n", name, summary.mean.psnr_db,
                      summary.mean.ssim, summary.mean.rmse);
@@ -112,10 +130,15 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
   nlohmann::ordered_json stages;
   for (const char* stage : kStages) stages[stage] = to_json(report.timer.summary(stage));
   stages["align"] = to_json(report.timer.summary("align"));
+  stages["evidence"] = to_json(report.timer.summary("evidence"));
   nlohmann::ordered_json vertices;
   for (std::size_t i = 1; i < frames.vertex_rejections.size(); ++i) {
     vertices[std::string(name_of(static_cast<core::VertexRejection>(i)))] =
         frames.vertex_rejections[i];
+  }
+  nlohmann::ordered_json findings = nlohmann::ordered_json::array();
+  for (const pipeline::Finding& finding : report.findings) {
+    findings.push_back({{"cause", finding.cause}, {"says", finding.line}});
   }
   nlohmann::ordered_json rejections = nlohmann::ordered_json::object();
   for (const auto& [reason, count] : frames.pose_rejections) rejections[reason] = count;
@@ -146,17 +169,22 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
           {"pose_refinement",
            {{"refined", frames.refined_px.size()}, {"motion_px", median_of(frames.refined_px)}}},
           {"board_refinement", board_json(report.board)},
+          {"mesh_refinement", mesh_json(report.mesh)},
           {"exposure", exposure_json(frames.gains)},
           {"reprojection_px", frames.reprojection_px.empty()
                                   ? nlohmann::ordered_json(nullptr)
                                   : nlohmann::ordered_json(median_of(frames.reprojection_px))},
           {"rejections", rejections},
+          {"findings", findings},
           {"vertex_rejections", vertices},
+          {"coverage", report.coverage ? evaluation::to_json(*report.coverage)
+                                       : nlohmann::ordered_json(nullptr)},
           {"options", report.options}};
 }
 
 std::string to_text(const ReplayReport& report) {
   std::string text = frames_text(report.frames);
+  if (report.mesh) text += mesh_text(*report.mesh);
   text += fmt::format("model    {}: {} patches ({} seen), {:.0f} numbers each, {:.2f} MB\n",
                       report.representation, report.patches, report.patches_observed,
                       per_patch(report), static_cast<double>(report.model_bytes) / 1e6);

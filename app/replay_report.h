@@ -3,15 +3,19 @@
 
 #include "capture/pose/board_refinement.h"
 #include "core/diagnostics/stage_timer.h"
+#include "evaluation/coverage/coverage_sectors.h"
 #include "evaluation/views/view_evaluation.h"
 #include "fitting/fitter.h"
+#include "pipeline/evidence/finding.h"
 #include "pipeline/frame_statistics.h"
+#include "pipeline/mesh_heights.h"
 
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace sheen::app {
 
@@ -27,11 +31,15 @@ struct ReplayReport {
   std::size_t coefficients = 0;
   std::size_t model_bytes = 0;
   std::optional<capture::BoardRefinement> board;          ///< where the tags were refined
+  std::optional<pipeline::MeshRefinement> mesh;           ///< where it was to be refined
   std::optional<evaluation::EvaluationSummary> held_out;  ///< of the fitted representation
   std::optional<evaluation::EvaluationSummary>
       held_out_mean;  ///< of the mean colours, on the same views
   /// Of the fitted representation, with the held-out poses refined against it too.
   std::optional<evaluation::EvaluationSummary> held_out_refined_poses;
+  std::vector<pipeline::Finding> findings;  ///< what the data show to be wrong with the recording
+  /// From where the object was seen; where the model has patches.
+  std::optional<evaluation::Coverage> coverage;
   nlohmann::ordered_json options;
 };
 

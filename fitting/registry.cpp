@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "fitting/depth_quads/descriptor.h"
 #include "fitting/descriptor.h"
 #include "fitting/detail/descriptor.h"
 #include "fitting/iwls/descriptor.h"
@@ -6,6 +7,7 @@
 #include "fitting/nearest_views/descriptor.h"
 #include "fitting/sparse/descriptor.h"
 #include "fitting/spherical_harmonics/descriptor.h"
+#include "fitting/view_dependent_texture/descriptor.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -16,9 +18,10 @@ namespace {
 /// One line per representation; the first is the default.
 std::vector<const Descriptor*>& registry() {
   static std::vector<const Descriptor*> all{
-      &sparse::kDescriptor, &detail::kDescriptor,
-      &iwls::kDescriptor,   &spherical_harmonics::kDescriptor,
-      &mean::kDescriptor,   &nearest_views::kDescriptor,
+      &sparse::kDescriptor,      &detail::kDescriptor,
+      &iwls::kDescriptor,        &spherical_harmonics::kDescriptor,
+      &mean::kDescriptor,        &nearest_views::kDescriptor,
+      &depth_quads::kDescriptor, &view_dependent_texture::kDescriptor,
   };
   return all;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/fit_stage.h"
 
+#include "pipeline/evidence/capture_evidence.h"
+
 #include <utility>
 
 namespace sheen::pipeline {
@@ -61,12 +63,17 @@ void FitStage::observe(const capture::Frame& frame, core::StageTimes& times, Pos
   }
   fitting::note_seen(*samples, statistics_.seen);
   integrated_.push_back({frame.index, camera_from_object, gain});
-  fit({frame.index, frame.image, camera, camera_from_object, parts_.observer.view(), *samples,
-       gain},
-      times);
+  const core::Observation observation{
+      frame.index, frame.image, camera, camera_from_object, parts_.observer.view(), *samples, gain};
+  {
+    const auto timing = times.measure("evidence");
+    parts_.evidence.look_at(frame, posed.camera_from_board, observation);
+  }
+  fit(observation, times);
 }
 
 void FitStage::fit(const core::Observation& observation, core::StageTimes& times) {
+  if (parts_.on_samples) parts_.on_samples(observation.frame_index, observation.samples);
   if (aligner_) aligner_->note_integrated(observation.samples);
   if (parts_.mean != nullptr) {
     const auto timing = times.measure("baseline");

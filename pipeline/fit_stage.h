@@ -16,6 +16,11 @@
 
 namespace sheen::pipeline {
 
+class CaptureEvidence;
+
+/// Gets a frame's index and its samples as they are integrated.
+using SamplesListener = std::function<void(int frame_index, const core::SampleBatch& samples)>;
+
 /// A view as it was integrated: enough to observe it once more.
 struct IntegratedView {
   int frame_index = 0;
@@ -32,12 +37,14 @@ class FitStage {
     const core::Mesh& mesh;
     ViewObserver& observer;
     SharedModel& model;
-    fitting::Fitter* mean;  ///< integrates the same samples for comparison; may be null
+    fitting::Fitter* mean;      ///< integrates the same samples for comparison; may be null
+    CaptureEvidence& evidence;  ///< looks at what is fitted
     HoldOut hold_out;
     PhotometricOptions photometric = {};
     /// Asked before a frame's samples are integrated, on the thread that fits; false keeps them
     /// out. May be empty.
     std::function<bool(const core::SampleBatch&)> admit = {};
+    SamplesListener on_samples = {};
   };
 
   explicit FitStage(Parts parts);

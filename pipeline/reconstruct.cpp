@@ -7,6 +7,7 @@
 #include "fitting/descriptor.h"
 #include "fitting/guidance/capture_score.h"
 #include "pipeline/check_seen.h"
+#include "pipeline/evidence/capture_evidence.h"
 #include "pipeline/frame_loop.h"
 #include "pipeline/observation_replay.h"
 #include "pipeline/patch_mesh.h"
@@ -50,6 +51,7 @@ struct Reconstruction::Impl {
   Impl(ReconstructionInputs inputs, const ReconstructionOptions& wanted, ProgressSink& sink);
 
   core::Mesh read_mesh(ProgressSink& sink);
+  std::optional<MeshRefinement> refine_mesh(ProgressSink& sink) const;
   core::Mesh patch_mesh();
   void look_at_sides(const TrackedFrame& tracked, ProgressSink& sink);
   double texel_size_m() const;
@@ -58,6 +60,8 @@ struct Reconstruction::Impl {
                                                const fitting::OptionValues& values,
                                                fitting::UndoableFitter*& history);
   bool admit(const core::SampleBatch& batch, FrameListener* listener);
+  void tell_new(const std::vector<Finding>& found, ProgressSink& sink);
+  void tell_early(ProgressSink& sink);
   void finish();
 
   ReconstructionOptions options;
@@ -66,6 +70,7 @@ struct Reconstruction::Impl {
   std::optional<capture::BoardRefinement> board;
   core::Mesh object_mesh;
   SessionScene scene;
+  std::optional<MeshRefinement> refinement;
   core::Mesh mesh;
   std::vector<Eigen::Isometry3d> first_poses;  ///< of a live recording: which side do they see
   std::unique_ptr<ViewObserver> observer;
@@ -78,6 +83,9 @@ struct Reconstruction::Impl {
   std::optional<fitting::guidance::CaptureScore> score;  ///< where mismatches are refused
   std::optional<PoseStage> poses;
   std::optional<int> frame_count;
+  std::optional<CaptureEvidence> evidence;
+  std::vector<Finding> findings;
+  int next_told = 64;  ///< frames after which a live recording is judged; doubles
   std::optional<FitStage> stage;
   FrameListener* listener = nullptr;
   core::StageTimer times;
@@ -92,6 +100,7 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
       board(refine_board(session, options, sink)),
       object_mesh(read_mesh(sink)),
       scene(session, object_mesh, options.frames.pose_source, sink),
+      refinement(refine_mesh(sink)),
       mesh(patch_mesh()),
       observer(std::make_unique<ViewObserver>(
           mesh, make_visibility(inputs.make_visibility, mesh, options.threads), options.limits,
@@ -115,15 +124,19 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
   frame_count = frames->frame_count();
   if (!is_live) check_stamps(session, options.frames, frame_count);
   poses.emplace(std::move(frames), pose_estimator());
+  evidence.emplace(session, object_mesh, mesh.positions.size(),
+                   board ? board->board : tag_board(session, options.frames.pose_source));
   stage.emplace(FitStage::Parts{
       .session = session,
       .mesh = mesh,
       .observer = *observer,
       .model = *model,
       .mean = mean.get(),
+      .evidence = *evidence,
       .hold_out = {options.frames.hold_out},
       .photometric = options.photometric,
-      .admit = [this](const core::SampleBatch& batch) { return admit(batch, listener); }});
+      .admit = [this](const core::SampleBatch& batch) { return admit(batch, listener); },
+      .on_samples = std::move(inputs.on_samples)});
 }
 
 std::unique_ptr<capture::PoseEstimator> Reconstruction::Impl::pose_estimator() const {
@@ -140,12 +153,21 @@ core::Mesh Reconstruction::Impl::read_mesh(ProgressSink& sink) {
   return read;
 }
 
-/// Refined to the images' resolution when patches are texels.
+/// Reads the recording once for it, before the run.
+std::optional<MeshRefinement> Reconstruction::Impl::refine_mesh(ProgressSink& sink) const {
+  if (!options.refine_mesh || is_live) return std::nullopt;
+  PoseStage stills(capture::open_frames(session, options.frames.start, options.frames.end),
+                   pose_estimator());
+  return refine_mesh_heights(session, object_mesh, options.frames, stills, options.threads, sink);
+}
+
+/// Subdivided to the images' resolution when patches are texels.
 core::Mesh Reconstruction::Impl::patch_mesh() {
-  if (options.patches != Patches::texel) return object_mesh;
-  const auto footprint_m = pixel_footprint_m(session, object_mesh, *pose_estimator());
-  if (!footprint_m) return object_mesh;  // the run itself will say why no frame is posed
-  return texel_mesh(object_mesh, *footprint_m, options.texel_px);
+  const core::Mesh& surface = refinement ? refinement->mesh : object_mesh;
+  if (options.patches != Patches::texel) return surface;
+  const auto footprint_m = pixel_footprint_m(session, surface, *pose_estimator());
+  if (!footprint_m) return surface;  // the run itself will say why no frame is posed
+  return texel_mesh(surface, *footprint_m, options.texel_px);
 }
 
 /// While a recording is made its mesh is fitted already; that it is inside out can be said only.
@@ -205,6 +227,22 @@ bool Reconstruction::Impl::admit(const core::SampleBatch& batch, FrameListener* 
   return true;
 }
 
+/// Says every cause once, in the words of when it was first seen.
+void Reconstruction::Impl::tell_new(const std::vector<Finding>& found, ProgressSink& sink) {
+  for (const Finding& finding : found) {
+    if (std::ranges::find(findings, finding.cause, &Finding::cause) != findings.end()) continue;
+    sink.note(finding.line);
+    findings.push_back(finding);
+  }
+}
+
+/// Whoever records can still mend it.
+void Reconstruction::Impl::tell_early(ProgressSink& sink) {
+  if (!is_live || evidence->frames() < next_told) return;
+  next_told *= 2;
+  tell_new(evidence->faults(), sink);
+}
+
 void Reconstruction::Impl::finish() {
   const double start_ms = core::own_cpu_ms();
   model->finish();
@@ -230,6 +268,7 @@ void Reconstruction::run(ProgressSink& sink, FrameListener* listener) {
         }
         impl_->look_at_sides(tracked, sink);
         impl_->stage->integrate(tracked);
+        impl_->tell_early(sink);
         sink.progress({"fitting", frames.frames_read, impl_->frame_count.value_or(0),
                        fmt::format("{} posed", frames.posed.size())});
         if (listener != nullptr) listener->on_frame(tracked, frames);
@@ -240,6 +279,7 @@ void Reconstruction::run(ProgressSink& sink, FrameListener* listener) {
   if (!frames.posed.empty()) impl_->scene.finish(sink);
   check_something_was_seen(impl_->session, impl_->options.frames, frames,
                            impl_->fitter->statistics().samples, impl_->scene);
+  impl_->tell_new(impl_->evidence->findings(), sink);
   impl_->finish();
 }
 
@@ -276,6 +316,10 @@ const FrameStatistics& Reconstruction::frames() const {
   return impl_->stage->statistics();
 }
 
+const std::vector<Finding>& Reconstruction::findings() const {
+  return impl_->findings;
+}
+
 const core::StageTimer& Reconstruction::times() const {
   return impl_->times;
 }
@@ -286,6 +330,10 @@ double Reconstruction::finish_cpu_ms() const {
 
 const std::optional<capture::BoardRefinement>& Reconstruction::board_refinement() const {
   return impl_->board;
+}
+
+const std::optional<MeshRefinement>& Reconstruction::mesh_refinement() const {
+  return impl_->refinement;
 }
 
 PosedFrame Reconstruction::refined(const capture::Frame& frame, const PosedFrame& posed) {

@@ -8,8 +8,10 @@
 #include "core/mesh/mesh.h"
 #include "fitting/fitter.h"
 #include "fitting/undo/undoable_fitter.h"
+#include "pipeline/evidence/finding.h"
 #include "pipeline/fit_stage.h"
 #include "pipeline/frame_statistics.h"
+#include "pipeline/mesh_heights.h"
 #include "pipeline/options.h"
 #include "pipeline/pose_stage.h"
 #include "pipeline/progress_sink.h"
@@ -17,6 +19,7 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 namespace sheen::pipeline {
 
@@ -28,6 +31,8 @@ struct ReconstructionInputs {
   VisibilityFactory make_visibility = {};
   /// The recording is being made: it cannot be looked at before its frames come.
   bool is_live = false;
+  /// Gets every view's samples just as they are fitted, on the thread that fits. May be empty.
+  SamplesListener on_samples = {};
 };
 
 /// Whoever watches frames being fitted, on the thread that fits.
@@ -44,9 +49,9 @@ class FrameListener {
 /// somebody may look at the model while it grows.
 class Reconstruction {
  public:
-  /// Opens all that may be wrong: mesh, poses, settings. Reads part of the recording where texels
-  /// or a refined board ask for it. Throws core::Error, or std::invalid_argument for
-  /// settings that the representation refuses.
+  /// Opens all that may be wrong: mesh, poses, settings. Reads the recording, or part of it, where
+  /// texels, a refined board or a refined mesh ask for it. Throws core::Error, or
+  /// std::invalid_argument for settings that the representation refuses.
   Reconstruction(ReconstructionInputs inputs, const ReconstructionOptions& options,
                  ProgressSink& sink);
   ~Reconstruction();
@@ -55,14 +60,16 @@ class Reconstruction {
   Reconstruction(const Reconstruction&) = delete;
   Reconstruction& operator=(const Reconstruction&) = delete;
 
-  /// Fits every frame and finishes the model. `listener` may be null. Throws core::Error
-  /// (bad_input) when nothing was posed or seen.
+  /// Fits every frame and finishes the model. `listener` may be null. Notes what the data show to
+  /// be wrong with the recording, while it is being made as soon as that is seen. Throws
+  /// core::Error (bad_input) when nothing was posed or seen.
   void run(ProgressSink& sink, FrameListener* listener = nullptr);
 
   [[nodiscard]] const capture::Session& session() const;
-  /// The surface that the light field lies on: the session's mesh, subdivided for texel patches.
+  /// The surface that the light field lies on: the session's mesh, refined where that was asked for
+  /// and accepted, subdivided for texel patches.
   [[nodiscard]] const core::Mesh& mesh() const;
-  /// The session's mesh as it is seen, before any subdivision.
+  /// The session's mesh as it is seen, before any refinement or subdivision.
   [[nodiscard]] const core::Mesh& object_mesh() const;
   [[nodiscard]] const ReconstructionOptions& options() const;
   [[nodiscard]] const fitting::LightField& light_field() const;
@@ -70,9 +77,13 @@ class Reconstruction {
   /// Mean colours of the same samples; null unless options.with_mean or they are what is fitted.
   [[nodiscard]] const fitting::LightField* mean_colours() const;
   [[nodiscard]] const FrameStatistics& frames() const;
+  /// What `run` found to be wrong with the recording.
+  [[nodiscard]] const std::vector<Finding>& findings() const;
   [[nodiscard]] const core::StageTimer& times() const;
   [[nodiscard]] double finish_cpu_ms() const;  ///< CPU time of what the fit put off to the end
   [[nodiscard]] const std::optional<capture::BoardRefinement>& board_refinement() const;
+  /// Nothing unless options.refine_mesh.
+  [[nodiscard]] const std::optional<MeshRefinement>& mesh_refinement() const;
 
   /// A held-out frame's pose refined against the finished model; with `refine_poses` only.
   PosedFrame refined(const capture::Frame& frame, const PosedFrame& posed);

@@ -50,6 +50,10 @@ core::Mesh read_object_mesh(const std::filesystem::path& path, std::vector<std::
 }
 
 core::Mesh read_session_mesh(capture::Session& session, ProgressSink& sink) {
+  if (session.mesh.empty()) {
+    throw core::bad_input(session.folder, "has no mesh of its object yet",
+                          "make one: sheen mesh " + session.folder.string());
+  }
   std::vector<std::string> notes;
   core::Mesh mesh = read_object_mesh(session.mesh, &notes);
   for (const std::string& note : notes) tell(sink, session.mesh, note);

@@ -14,6 +14,11 @@ bool takes_poses_from_file(const capture::Session& session, PoseSource source) {
   return source == PoseSource::file || (source == PoseSource::automatic && session.poses);
 }
 
+std::optional<capture::Board> tag_board(const capture::Session& session, PoseSource source) {
+  if (takes_poses_from_file(session, source) || !session.board) return std::nullopt;
+  return capture::read_board(*session.board);
+}
+
 std::unique_ptr<capture::PoseEstimator> make_pose_estimator(const capture::Session& session,
                                                             PoseSource source,
                                                             const capture::PoseGate& gate,

@@ -4,14 +4,32 @@
 #include "core/diagnostics/error.h"
 #include "fitting/descriptor.h"
 #include "fitting/patch_light_field.h"
+#include "render/depth_quads/quad_renderer.h"
 #include "render/gl/offscreen_target.h"
 #include "render/surface/surface_renderer.h"
+#include "render/view_dependent_texture/view_texture_renderer.h"
 
 #include <opencv2/imgproc.hpp>
 
 #include <string>
 
 namespace sheen::render {
+namespace {
+
+/// What draws light fields that are not made of patches: a line for each. Gives null for others.
+std::unique_ptr<Renderer> make_image_renderer(const core::Mesh& mesh,
+                                              const fitting::LightField& light_field, int threads) {
+  if (const auto* quads = dynamic_cast<const fitting::depth_quads::DepthQuads*>(&light_field)) {
+    return make_quad_renderer(*quads, threads);
+  }
+  if (const auto* texture =
+          dynamic_cast<const fitting::view_dependent_texture::ViewTexture*>(&light_field)) {
+    return make_view_texture_renderer(mesh, *texture, threads);
+  }
+  return nullptr;
+}
+
+}  // namespace
 
 void Renderer::draw(gl::OffscreenTarget& target, const core::CameraModel& camera,
                     const Eigen::Isometry3d& camera_from_object) {
@@ -36,6 +54,7 @@ std::unique_ptr<Renderer> make_renderer(Context& context, const core::Mesh& mesh
   if (const auto* const patches = fitting::as_patches(light_field)) {
     return make_gl_surface_renderer(context, mesh, *patches, threads);
   }
+  if (auto renderer = make_image_renderer(mesh, light_field, threads)) return renderer;
   throw core::Error(core::Error::Kind::run_failed,
                     "representation " + std::string(light_field.representation()),
                     "has no renderer in this program", "use the version of sheen that made it");

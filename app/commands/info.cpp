@@ -4,6 +4,7 @@
 #include "core/mesh/bounds.h"
 #include "fitting/model_file/model_file.h"
 #include "fitting/patch_light_field.h"
+#include "fitting/state/state_file.h"
 #include "fitting/texture/surface_texture.h"
 #include "pipeline/session_mesh.h"
 
@@ -38,7 +39,7 @@ nlohmann::ordered_json describe_session(const std::filesystem::path& folder) {
     document["board"] = {{"family", board.family}, {"tags", board.tags.size()}};
   }
   if (session.poses) document["poses"] = capture::read_trajectory(*session.poses).entries().size();
-  document["mesh"] = describe(pipeline::read_object_mesh(session.mesh));
+  if (!session.mesh.empty()) document["mesh"] = describe(pipeline::read_object_mesh(session.mesh));
   document["warnings"] = session.warnings;
   return document;
 }
@@ -67,6 +68,28 @@ nlohmann::ordered_json describe_model(const std::filesystem::path& path) {
   return document;
 }
 
+nlohmann::ordered_json describe_state(const std::filesystem::path& path) {
+  const fitting::StateReader state(path);
+  nlohmann::ordered_json document{{"kind", "state"},
+                                  {"representation", state.header().representation},
+                                  {"options", state.header().options},
+                                  {"views", state.views().size()}};
+  std::map<std::string, std::vector<int>> sessions;
+  for (const fitting::StateView& view : state.views()) sessions[view.session].push_back(view.frame);
+  for (const auto& [name, frames] : sessions) {
+    document["sessions"][name] = {
+        {"views", frames.size()}, {"first_frame", frames.front()}, {"last_frame", frames.back()}};
+  }
+  document["bytes"] = std::filesystem::file_size(path);
+  document["mesh"] = describe(state.header().mesh);
+  return document;
+}
+
+nlohmann::ordered_json describe_path(const std::filesystem::path& path) {
+  if (std::filesystem::is_directory(path)) return describe_session(path);
+  return fitting::is_state(path) ? describe_state(path) : describe_model(path);
+}
+
 /// One "name  value" line per entry; nested entries on one line.
 std::string to_text(const nlohmann::ordered_json& document) {
   std::string text;
@@ -81,12 +104,11 @@ std::string to_text(const nlohmann::ordered_json& document) {
 
 void add_info_command(CommandLine& program, CommandContext& context) {
   auto path = std::make_shared<std::filesystem::path>();
-  Command command = program.command("info", "Tell what a session or a model holds");
-  command.option("path", *path, "Session folder or model file").required();
+  Command command = program.command("info", "Tell what a session, a model or a fit state holds");
+  command.option("path", *path, "Session folder, model file or fit state").required();
   add_common_options(command, context);
   command.action([path, &context] {
-    const nlohmann::ordered_json document =
-        std::filesystem::is_directory(*path) ? describe_session(*path) : describe_model(*path);
+    const nlohmann::ordered_json document = describe_path(*path);
     context.publish(document, to_text(document));
   });
 }

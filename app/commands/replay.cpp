@@ -5,9 +5,11 @@
 #include "app/preview/live_session.h"
 #include "app/preview/run_preview.h"
 #include "app/replay_report.h"
+#include "app/state/session_states.h"
 #include "app/terminal_sink.h"
 #include "capture/pose/trajectory.h"
 #include "capture/source/paced_source.h"
+#include "core/mesh/placed_ply.h"
 #include "core/visibility/ray_visibility.h"
 #include "evaluation/views/evaluate_views.h"
 #include "fitting/model_file/model_file.h"
@@ -71,6 +73,9 @@ void save(const ReplayOptions& options, const Reconstruction& fitted) {
     fitting::write_model(options.mean_output, fitted.mesh(), *fitted.mean_colours(),
                          fitted.frames().seen);
   }
+  if (!options.mesh_output.empty()) {
+    core::write_placed_ply(options.mesh_output, fitted.mesh_refinement()->mesh);
+  }
   if (!options.poses_output.empty()) write_poses(options.poses_output, fitted.frames().posed);
 }
 
@@ -87,9 +92,12 @@ ReplayReport describe(const ReplayOptions& options, const Reconstruction& fitted
                       .coefficients = light_field.coefficient_count(),
                       .model_bytes = std::filesystem::file_size(options.output),
                       .board = fitted.board_refinement(),
+                      .mesh = fitted.mesh_refinement(),
                       .held_out = {},
                       .held_out_mean = {},
                       .held_out_refined_poses = {},
+                      .findings = fitted.findings(),
+                      .coverage = {},
                       .options = std::move(settings)};
   if (const auto* const patches = fitting::as_patches(light_field)) {
     report.patches = patches->patch_count();
@@ -174,9 +182,19 @@ pipeline::ReconstructionOptions completed(const ReplayOptions& options,
   return fit;
 }
 
+/// Where the object was seen from, once the held-out views are measured.
+void add_coverage(const Reconstruction& fitted, ReplayReport& report) {
+  const auto* const patches = fitting::as_patches(fitted.light_field());
+  if (patches == nullptr || patches->observed().size() != fitted.mesh().normals.size()) return;
+  report.coverage = evaluation::measure_coverage(fitted.mesh(), fitted.session().board_from_object,
+                                                 patches->observed(), fitted.frames(),
+                                                 report.held_out ? &*report.held_out : nullptr);
+}
+
 void run_replay(const ReplayOptions& options, const CommandContext& context) {
   // Open everything that may be wrong before the long work.
-  context.check_outputs({options.output, options.mean_output, options.poses_output});
+  context.check_outputs({options.output, options.mean_output, options.mesh_output,
+                         options.state_output, options.poses_output});
   if (options.preview) check_display();
   const capture::Session session = capture::open_session(options.session);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
@@ -194,19 +212,27 @@ FitOutcome fit_session(const ReplayOptions& options, const capture::Session& ses
                        std::unique_ptr<capture::FrameSource> frames, const CommandContext& context,
                        const LiveCamera* camera) {
   TerminalSink sink(context);
+  SessionState state(session);
   Reconstruction fitted({.session = session,
                          .frames = std::move(frames),
                          .make_visibility = visibility_factory(options.visibility),
-                         .is_live = camera != nullptr},
+                         .is_live = camera != nullptr,
+                         .on_samples = state.listener()},
                         completed(options, context), sink);
+  if (!options.state_output.empty()) {
+    state.open(options.state_output,
+               {fitted.options().representation, fitted.options().fit, fitted.mesh()});
+  }
   const auto live = make_live_session(options, fitted, camera != nullptr);
   FitOutcome outcome;
   const auto work = [&] {
     fitted.run(sink, live.get());
     save(options, fitted);
+    state.commit();
     if (live) live->finish();
     ReplayReport report = describe(options, fitted);
     add_held_out(options, fitted, context, report);
+    add_coverage(fitted, report);
     outcome = {to_json(report), to_text(report) + "written  " + options.output.string() + "\n"};
   };
   if (!live) {

@@ -109,13 +109,37 @@ void add_replay_options(Command command, ReplayOptions& options) {
   add_frame_options(command, fit.frames);
   command.flag("--refine-board", fit.refine_board,
                "Refine where the tags lie from the whole recording before posing frames");
-  command.flag("--preview", options.preview,
-               "Watch it in a window, no faster than it was recorded; the program ends when the "
-               "window is closed");
+  Option refine_mesh = command.flag(
+      "--refine-mesh", fit.refine_mesh,
+      "Move the mesh's vertices along their normals to where the pictures of its print "
+      "agree; kept as it is unless that shows on views left out of it");
+  command
+      .option("--write-mesh", options.mesh_output,
+              "With --refine-mesh: also save the mesh, in the coordinates of the session's (.ply)")
+      .check([](const std::string& path) {
+        return path.ends_with(".ply") ? std::string() : path + " does not end in .ply";
+      })
+      .type("FILE.ply");
+  command.after_parsing([&options] {
+    if (!options.mesh_output.empty() && !options.reconstruction.refine_mesh) {
+      throw UsageError("--write-mesh needs --refine-mesh, without it the mesh is the session's");
+    }
+  });
+  Option preview = command.flag(
+      "--preview", options.preview,
+      "Watch it in a window, no faster than it was recorded; the program ends when the "
+      "window is closed");
   command
       .option("--mean-out", options.mean_output,
               "Also save the mean colours, what a textured mesh would show")
       .type("FILE");
+  const Option state =
+      command
+          .option("--state", options.state_output,
+                  "Also save every view's samples (24 bytes each), for sheen resume, merge, forget")
+          .type("FILE");
+  preview.excludes(state);
+  refine_mesh.excludes(state);  // states know the session's mesh
   command.option("--poses-out", options.poses_output, "Also save the poses, TUM form").type("FILE");
 }
 
@@ -141,6 +165,7 @@ nlohmann::ordered_json to_json(const ReplayOptions& options) {
                    {"refine_poses", fit.photometric.refine_poses},
                    {"pose_error_px", fit.photometric.pose_error_px},
                    {"refine_board", fit.refine_board},
+                   {"refine_mesh", fit.refine_mesh},
                    {"exposure", fit.photometric.exposure},
                    {"refuse_mismatches", fit.refuse_mismatches},
                    {"texel_px", fit.texel_px}});

@@ -18,6 +18,8 @@ struct ReplayOptions {
   std::filesystem::path session;
   std::filesystem::path output;        ///< the model
   std::filesystem::path mean_output;   ///< the mean colours as a model; empty: not written
+  std::filesystem::path mesh_output;   ///< the refined mesh, PLY; empty: not written
+  std::filesystem::path state_output;  ///< what the fit can go on from; empty: not written
   std::filesystem::path poses_output;  ///< estimated poses, TUM form; empty: not written
   pipeline::ReconstructionOptions reconstruction;
   VisibilityMethod visibility = VisibilityMethod::automatic;

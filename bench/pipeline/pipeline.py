@@ -29,7 +29,7 @@ def options():
     parser.add_argument("--vertices", default="4000,31000,150000,500000",
                         help="sizes, separated by commas")
     parser.add_argument("--scenes", default="matte,glossy", help="scenes of sheen synth")
-    parser.add_argument("--fitters", default="quadtree,sparse", help="fitters of sheen replay")
+    parser.add_argument("--fitters", default="quadtree,sparse", help="fitters of sheen replay, and detail (sparse beside a texture)")
     parser.add_argument("--frames", default=60, type=int, help="frames of a session")
     parser.add_argument("--threads", default=2, type=int, help="1: stages do not overlap")
     return parser.parse_args()
@@ -49,10 +49,11 @@ def session(chosen, scene, vertices):
 
 def measure(chosen, folder, fitter):
     """The replay's own report."""
+    fit = ["--patches", "detail"] if fitter == "detail" else ["--fitter", fitter]
     with tempfile.TemporaryDirectory() as scratch:
         report = pathlib.Path(scratch) / "report.json"
         subprocess.run([chosen.program, "replay", folder, "-o", pathlib.Path(scratch) / "model.glb",
-                        "--fitter", fitter, "--threads", str(chosen.threads), "--report", report],
+                        *fit, "--threads", str(chosen.threads), "--report", report],
                        check=True, stdout=subprocess.DEVNULL)
         return json.loads(report.read_text())
 

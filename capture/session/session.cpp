@@ -182,7 +182,9 @@ Eigen::Isometry3d read_transform(const SessionReader& reader, const json& object
   return transform;
 }
 
+/// A session may be recorded before there is a mesh.
 void read_object(SessionReader& reader, Session& session) {
+  if (!reader.root().contains("object")) return;
   const json& object = reader.object("object");
   reader.warn_unknown(object, {"mesh", "T_stage_object"}, "object.");
   const auto mesh = reader.inner_file(object, "mesh");

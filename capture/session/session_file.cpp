@@ -58,6 +58,17 @@ void write_session_file(const std::filesystem::path& folder, const SessionFile& 
   write_json(folder / "session.json", document);
 }
 
+void write_object(const std::filesystem::path& from, const std::filesystem::path& to,
+                  const std::string& mesh) {
+  auto session = ordered_json::parse(read_text_file(from, kMaxSessionBytes), nullptr, false);
+  if (!session.is_object()) {
+    throw core::bad_input(from, "is no JSON object", "see docs/session-format.md");
+  }
+  session["object"] = {{"mesh", mesh},
+                       {"T_stage_object", transform_json(Eigen::Isometry3d::Identity())}};
+  write_json(to, session);
+}
+
 void write_board_from_object(const std::filesystem::path& from, const std::filesystem::path& to,
                              const Eigen::Isometry3d& board_from_object) {
   auto session = ordered_json::parse(read_text_file(from, kMaxSessionBytes), nullptr, false);

@@ -33,6 +33,12 @@ void copy_into_session(const std::filesystem::path& from, const std::filesystem:
 /// Writes `folder`/session.json. Throws core::Error (run_failed).
 void write_session_file(const std::filesystem::path& folder, const SessionFile& session);
 
+/// Writes the session.json `from` with another object, placed on the board as its file has it;
+/// `mesh` is its path within the folder. Throws core::Error (bad_input) when `from` is no JSON
+/// object.
+void write_object(const std::filesystem::path& from, const std::filesystem::path& to,
+                  const std::string& mesh);
+
 /// Writes the session.json `from` with another place of the object as `to`, which may be the same
 /// file; everything else stays as it is. Throws core::Error (bad_input) when it holds no object.
 void write_board_from_object(const std::filesystem::path& from, const std::filesystem::path& to,

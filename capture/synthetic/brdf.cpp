@@ -15,6 +15,7 @@ const Eigen::Vector3f kTeal(0.012f, 0.105f, 0.115f);
 const Eigen::Vector3f kTerracotta(0.42f, 0.105f, 0.042f);
 const Eigen::Vector3f kIvory(0.60f, 0.51f, 0.37f);
 const Eigen::Vector3f kVein(0.05f, 0.035f, 0.025f);
+const Eigen::Vector3f kPlaster(0.72f, 0.72f, 0.72f);
 const Eigen::Vector3f kPrintInk(0.02f, 0.025f, 0.06f);
 
 constexpr float kGlossySpecular = 0.20f;
@@ -86,6 +87,7 @@ float smooth_noise(const Eigen::Vector3f& point) {
 }
 
 Brdf brdf_at(SceneKind kind, const Eigen::Vector3f& point_in_object, float unit_m) {
+  if (kind == SceneKind::white) return {kPlaster, 0, kGlossyAlpha};
   const Eigen::Vector3f p = point_in_object / unit_m;
 
   // Bend the bands and mottle them, both slowly and finely.

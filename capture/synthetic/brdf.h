@@ -11,10 +11,11 @@ namespace sheen::capture::synthetic {
 
 /// How the object's enamel shines: not at all, in bands, everywhere; `textured` shines like `mixed`
 /// under a fine print.
-enum class SceneKind { matte, mixed, glossy, textured };
+/// white: no colour, no gloss, no texture; only outlines tell its shape.
+enum class SceneKind { matte, mixed, glossy, textured, white };
 
-inline constexpr std::array<std::string_view, 4> kSceneNames{"matte", "mixed", "glossy",
-                                                             "textured"};
+inline constexpr std::array<std::string_view, 5> kSceneNames{"matte", "mixed", "glossy", "textured",
+                                                             "white"};
 std::optional<SceneKind> scene_kind(std::string_view name);
 
 /// What a point of a surface does with light.

@@ -2,9 +2,13 @@
 #include "core/image/write_image.h"
 
 #include "core/diagnostics/error.h"
-#include "core/files/staged_output.h"
+#include "core/files/write_file.h"
 
 #include <opencv2/imgcodecs.hpp>
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
 
 namespace sheen::core {
 
@@ -12,12 +16,12 @@ void write_image(const std::filesystem::path& path, const cv::Mat& image) {
   if (!cv::haveImageWriter(path.string())) {
     throw bad_input(path, "has an ending no image format is known for", "name it .png or .jpg");
   }
-  StagedOutput output(path);
-  if (!cv::imwrite(output.path().string(), image)) {
-    throw Error(Error::Kind::run_failed, path, "could not be written",
-                "check free space and permissions");
+  // In memory first: encoders that write files themselves tell a full disk on stderr, too.
+  std::vector<std::uint8_t> bytes;
+  if (!cv::imencode(path.extension().string(), image, bytes)) {
+    throw Error(Error::Kind::run_failed, path, "could not be encoded", "name it .png or .jpg");
   }
-  output.commit();
+  write_file(path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace sheen::core

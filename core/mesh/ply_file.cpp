@@ -4,6 +4,7 @@
 #include "core/diagnostics/error.h"
 #include "core/files/read_file.h"
 #include "core/files/write_file.h"
+#include "core/mesh/placed_ply.h"
 #include "core/mesh/ply_body.h"
 #include "core/mesh/ply_header.h"
 #include "core/mesh/triangulate.h"
@@ -176,15 +177,34 @@ void append_bytes(std::string& bytes, const T& value) {
   bytes.append(raw.data(), raw.size());
 }
 
-std::string header_text(const Mesh& mesh) {
+std::string header_text(const Mesh& mesh, const std::string& coordinate, bool has_confidence) {
   std::string text = "ply\nformat binary_little_endian 1.0\n";
   text += "element vertex " + std::to_string(mesh.positions.size()) + "\n";
-  for (const char* name : {"x", "y", "z", "nx", "ny", "nz"}) {
-    text += std::string("property float ") + name + "\n";
-  }
+  for (const char* name : {"x", "y", "z"}) text += "property " + coordinate + " " + name + "\n";
+  for (const char* name : {"nx", "ny", "nz"}) text += std::string("property float ") + name + "\n";
+  if (has_confidence) text += "property float confidence\n";
   text += "element face " + std::to_string(mesh.triangles.size()) + "\n";
   text += "property list uchar int vertex_indices\nend_header\n";
   return text;
+}
+
+/// A mesh with each of its positions as `place` gives it; `confidence` per vertex, or empty.
+template <typename Place>
+std::string ply_bytes(const Mesh& mesh, std::span<const float> confidence,
+                      const std::string& coordinate, const Place& place) {
+  assert(mesh.normals.size() == mesh.positions.size());
+  assert(confidence.empty() || confidence.size() == mesh.positions.size());
+  std::string bytes = header_text(mesh, coordinate, !confidence.empty());
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    for (const auto value : place(mesh.positions[i])) append_bytes(bytes, value);
+    for (const float value : mesh.normals[i]) append_bytes(bytes, value);
+    if (!confidence.empty()) append_bytes(bytes, confidence[i]);
+  }
+  for (const auto& triangle : mesh.triangles) {
+    append_bytes(bytes, std::uint8_t{3});
+    for (const std::uint32_t corner : triangle) append_bytes(bytes, corner);
+  }
+  return bytes;
 }
 
 }  // namespace
@@ -217,19 +237,17 @@ MeshFile read_ply(const std::filesystem::path& path) {
   return mesh;
 }
 
-void write_ply(const std::filesystem::path& path, const Mesh& mesh) {
-  assert(mesh.normals.size() == mesh.positions.size());
-  std::string bytes = header_text(mesh);
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    for (const float value : mesh.positions[i]) append_bytes(bytes, value);
-    for (const float value : mesh.normals[i]) append_bytes(bytes, value);
-  }
-  for (const auto& triangle : mesh.triangles) {
-    append_bytes(bytes, std::uint8_t{3});
-    for (const std::uint32_t corner : triangle) append_bytes(bytes, corner);
-  }
+void write_ply(const std::filesystem::path& path, const Mesh& mesh,
+               std::span<const float> confidence) {
+  write_file(path,
+             ply_bytes(mesh, confidence, "float", [](const Eigen::Vector3f& p) { return p; }));
+}
 
-  write_file(path, bytes);
+void write_placed_ply(const std::filesystem::path& path, const Mesh& mesh) {
+  if (mesh.offset.isZero(0)) return write_ply(path, mesh);
+  write_file(path, ply_bytes(mesh, {}, "double", [&](const Eigen::Vector3f& p) -> Eigen::Vector3d {
+               return p.cast<double>() + mesh.offset;
+             }));
 }
 
 }  // namespace sheen::core

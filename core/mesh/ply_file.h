@@ -5,6 +5,7 @@
 #include "core/mesh/mesh_file.h"
 
 #include <filesystem>
+#include <span>
 
 namespace sheen::core {
 
@@ -15,7 +16,9 @@ namespace sheen::core {
 MeshFile read_ply(const std::filesystem::path& path);
 
 /// Writes a binary little-endian PLY with normals, beside the final name and then moved into place.
-/// Coordinates are the mesh's own, without its offset.
-void write_ply(const std::filesystem::path& path, const Mesh& mesh);
+/// Coordinates are the mesh's own, without its offset. `confidence`, one number per vertex, becomes
+/// a property of that name; it may be empty.
+void write_ply(const std::filesystem::path& path, const Mesh& mesh,
+               std::span<const float> confidence = {});
 
 }  // namespace sheen::core

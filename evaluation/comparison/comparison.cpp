@@ -20,6 +20,7 @@ std::vector<std::uint8_t> front_of(std::span<const ComparedCandidate> rows, Cost
 
 void add(const Measurement& part, Measurement& sum) {
   sum.error.psnr_db += part.error.psnr_db;
+  sum.live_psnr_db += part.live_psnr_db;
   sum.error.ssim += part.error.ssim;
   sum.error.rmse += part.error.rmse;
   sum.error.pixels += part.error.pixels;
@@ -28,15 +29,17 @@ void add(const Measurement& part, Measurement& sum) {
   sum.patches += part.patches;
   sum.coefficients += part.coefficients;
   sum.model_bytes += part.model_bytes;
+  sum.light_field_bytes += part.light_field_bytes;
   sum.fit_ms += part.fit_ms;
+  sum.finish_ms += part.finish_ms;
   sum.fit_frame_ms += part.fit_frame_ms;
   sum.render_view_ms += part.render_view_ms;
 }
 
 void divide(Measurement& sum, std::size_t count) {
   const auto divisor = static_cast<double>(count);
-  for (double* figure : {&sum.error.psnr_db, &sum.error.ssim, &sum.error.rmse, &sum.fit_ms,
-                         &sum.fit_frame_ms, &sum.render_view_ms}) {
+  for (double* figure : {&sum.error.psnr_db, &sum.live_psnr_db, &sum.error.ssim, &sum.error.rmse,
+                         &sum.fit_ms, &sum.finish_ms, &sum.fit_frame_ms, &sum.render_view_ms}) {
     *figure /= divisor;
   }
   for (std::size_t* figure :
@@ -44,6 +47,7 @@ void divide(Measurement& sum, std::size_t count) {
     *figure /= count;
   }
   sum.model_bytes /= count;
+  sum.light_field_bytes /= count;
 }
 
 }  // namespace

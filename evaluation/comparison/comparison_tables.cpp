@@ -19,6 +19,7 @@ nlohmann::ordered_json to_json(const ComparedCandidate& row) {
           {"label", row.candidate.label},
           {"family", row.candidate.family},
           {"psnr", m.error.psnr_db},
+          {"live_psnr", m.live_psnr_db},
           {"ssim", m.error.ssim},
           {"rmse", m.error.rmse},
           {"views", m.views},
@@ -27,7 +28,9 @@ nlohmann::ordered_json to_json(const ComparedCandidate& row) {
           {"coefficients", m.coefficients},
           {"coefficients_per_patch", coefficients_per_patch(m)},
           {"model_bytes", m.model_bytes},
+          {"light_field_bytes", m.light_field_bytes},
           {"fit_ms", m.fit_ms},
+          {"finish_ms", m.finish_ms},
           {"fit_ms_per_frame", m.fit_frame_ms},
           {"render_ms_per_view", m.render_view_ms},
           {"front_fit_time", row.fronts.fit_time},
@@ -58,20 +61,20 @@ std::string csv_value(const nlohmann::ordered_json& value) {
 std::string session_text(const Comparison& comparison, const ComparedSession& session) {
   std::string text = fmt::format(
       "{}: {} frames fitted, {} views held out ({})\n"
-      "  {:<22}{:>9}{:>9}{:>9}{:>10}{:>11}{:>10}{:>11}  front\n",
+      "  {:<22}{:>9}{:>9}{:>9}{:>9}{:>10}{:>11}{:>10}{:>11}  front\n",
       session.name, session.fitted_frames, session.held_out_views,
       session.has_own_held_out ? "the session's own held_out/" : "from its frames", "candidate",
-      "PSNR dB", "SSIM", "RMSE", "numbers", "bytes", "fit ms", "render ms");
+      "PSNR dB", "live dB", "SSIM", "RMSE", "numbers", "bytes", "fit ms", "render ms");
   for (const ComparedCandidate& row : comparison.rows) {
     if (row.session != session.name) continue;
     const Measurement& m = row.measured;
     std::string front = row.fronts.bytes ? " bytes" : "";
     if (row.fronts.fit_time) front += " fit";
     if (row.fronts.render_time) front += " render";
-    text += fmt::format("  {:<22}{:>9.2f}{:>9.4f}{:>9.4f}{:>10.1f}{:>11}{:>10.1f}{:>11.1f} {}\n",
-                        row.candidate.name, m.error.psnr_db, m.error.ssim, m.error.rmse,
-                        coefficients_per_patch(m), m.model_bytes, m.fit_frame_ms, m.render_view_ms,
-                        front);
+    text += fmt::format(
+        "  {:<22}{:>9.2f}{:>9.2f}{:>9.4f}{:>9.4f}{:>10.1f}{:>11}{:>10.1f}{:>11.1f} {}\n",
+        row.candidate.name, m.error.psnr_db, m.live_psnr_db, m.error.ssim, m.error.rmse,
+        coefficients_per_patch(m), m.model_bytes, m.fit_frame_ms, m.render_view_ms, front);
   }
   return text;
 }

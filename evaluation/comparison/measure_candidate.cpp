@@ -46,6 +46,24 @@ std::uintmax_t bytes_of(const core::Mesh& mesh, const fitting::LightField& light
   return bytes;
 }
 
+struct DrawnViews {
+  core::ImageError error;  ///< means
+  std::size_t count;
+  double render_ms;  ///< CPU per view, median
+};
+
+/// Draws the held-out views and compares.
+DrawnViews draw_views(const fitting::LightField& light_field, const Observations& observations,
+                      render::Context& gl, int threads) {
+  TimedRenderer renderer(render::make_renderer(gl, observations.mesh, light_field, threads));
+  render::Renderer* const renderers[] = {&renderer};
+  const auto summaries =
+      evaluate_views(gl, {observations.held_out_session, observations.mesh, observations.held_out},
+                     renderers, [](const ComparedView&) {});
+  const auto& summary = summaries.front();
+  return {summary.mean, summary.views.size(), renderer.cpu_ms().median};
+}
+
 /// What a pixel covers on the object.
 double texel_size_m(const Observations& observations) {
   std::vector<Eigen::Isometry3d> poses;
@@ -70,29 +88,30 @@ Measurement measure_candidate(const Candidate& candidate, const Observations& ob
   }
   const auto fitter =
       fitting::make_fitter(candidate.representation, observations.mesh, values, threads);
+  const fitting::LightField& light_field = fitter->light_field();
   const double begin_cpu_ms = core::process_cpu_ms();
   integrate_all(observations, threads, *fitter, sink);
+  const double integrated_cpu_ms = core::process_cpu_ms();
+  measurement.live_psnr_db = draw_views(light_field, observations, gl, threads).error.psnr_db;
+  const double drawn_cpu_ms = core::process_cpu_ms();
   fitter->finish();
-  measurement.fit_ms = core::process_cpu_ms() - begin_cpu_ms;
+  measurement.finish_ms = core::process_cpu_ms() - drawn_cpu_ms;
+  measurement.fit_ms = integrated_cpu_ms - begin_cpu_ms + measurement.finish_ms;
   measurement.fit_frame_ms = measurement.fit_ms / static_cast<double>(observations.views.size());
 
   // Weigh.
-  const fitting::LightField& light_field = fitter->light_field();
   const auto* const patches = fitting::as_patches(light_field);
   measurement.samples = fitter->statistics().samples;
   measurement.patches = patches != nullptr ? patches->patch_count() : 0;
   measurement.coefficients = light_field.coefficient_count();
   measurement.model_bytes = bytes_of(observations.mesh, light_field, scratch);
+  measurement.light_field_bytes = fitting::byte_size(light_field);
 
   // Draw and compare.
-  TimedRenderer renderer(render::make_renderer(gl, observations.mesh, light_field, threads));
-  render::Renderer* const renderers[] = {&renderer};
-  const auto summaries =
-      evaluate_views(gl, {observations.held_out_session, observations.mesh, observations.held_out},
-                     renderers, [](const ComparedView&) {});
-  measurement.error = summaries.front().mean;
-  measurement.views = summaries.front().views.size();
-  measurement.render_view_ms = renderer.cpu_ms().median;
+  const DrawnViews drawn = draw_views(light_field, observations, gl, threads);
+  measurement.error = drawn.error;
+  measurement.views = drawn.count;
+  measurement.render_view_ms = drawn.render_ms;
   return measurement;
 }
 

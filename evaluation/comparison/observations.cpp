@@ -4,6 +4,7 @@
 #include "core/diagnostics/error.h"
 #include "core/visibility/raster_visibility.h"
 #include "pipeline/check_seen.h"
+#include "pipeline/evidence/capture_evidence.h"
 #include "pipeline/frame_loop.h"
 #include "pipeline/hold_out.h"
 #include "pipeline/observation_replay.h"
@@ -32,6 +33,8 @@ void observe_frames(const pipeline::FrameChoice& choice, int threads, pipeline::
   pipeline::FrameStatistics frames;
   std::size_t samples = 0;
   pipeline::SessionScene scene(session, observations.mesh, choice.pose_source, sink);
+  pipeline::CaptureEvidence evidence(session, observations.mesh, observations.mesh.positions.size(),
+                                     pipeline::tag_board(session, choice.pose_source));
   pipeline::for_each_frame(poses, threads > 1, [&](pipeline::TrackedFrame& tracked) {
     const auto posed = frames.count(tracked);
     sink.progress({"observing", frames.frames_read});
@@ -45,6 +48,7 @@ void observe_frames(const pipeline::FrameChoice& choice, int threads, pipeline::
     const auto camera_from_object = posed->camera_from_board * session.board_from_object;
     const auto observation = observer.observe(posed->index, tracked.frame.image,
                                               session.camera_of(posed->index), camera_from_object);
+    evidence.look_at(tracked.frame, posed->camera_from_board, observation);
     observations.views.push_back({posed->index, camera_from_object, 1});
     observations.samples.push_back(observation.samples);
     samples += observation.samples.size();
@@ -53,6 +57,7 @@ void observe_frames(const pipeline::FrameChoice& choice, int threads, pipeline::
   const capture::SourceReport recording = poses.report();
   for (const std::string& note : recording.notes) sink.note(note);
   pipeline::check_something_was_seen(session, choice, frames, samples, scene);
+  for (const pipeline::Finding& finding : evidence.findings()) sink.note(finding.line);
 }
 
 void check_views_are_held_out(const Observations& observations) {

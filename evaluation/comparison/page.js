@@ -29,6 +29,7 @@
   const columns = [
     { key: "label", name: "Candidate", text: (v) => v, least: true },
     { key: "psnr", name: "PSNR, dB", text: (v) => digits(v, 2) },
+    { key: "live_psnr", name: "Live, dB", text: (v) => digits(v, 2) },
     { key: "ssim", name: "SSIM", text: (v) => digits(v, 4) },
     { key: "rmse", name: "RMSE", text: (v) => digits(v, 4), least: true },
     { key: "coefficients_per_patch", name: "Numbers", text: (v) => v ? digits(v, 1) : "–", least: true },

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/detail/detail_fitter.h"
 
+#include "core/concurrency/parallel_for.h"
 #include "core/diagnostics/error.h"
 #include "core/mesh/bounds.h"
 #include "core/mesh/neighbours.h"
 #include "fitting/detail/detail_light_field.h"
+#include "fitting/detail/patch_means.h"
 #include "fitting/detail/simplify_texture.h"
 #include "fitting/detail/texel_means.h"
 #include "fitting/detail/texture_solver.h"
@@ -15,7 +17,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <numeric>
+#include <span>
 
 namespace sheen::fitting::detail {
 namespace {
@@ -50,7 +54,8 @@ class DetailFitter final : public Fitter {
         raster_(mesh, threads),
         texel_means_(mesh, model_.texture().atlas(), threads),
         texture_sums_(mesh, model_.texture().atlas(), threads),
-        vertex_means_(mesh, threads) {}
+        vertex_means_(mesh, threads),
+        patch_means_(mesh.positions.size()) {}
 
   const ModelUpdate& integrate(const core::Observation& observation) override;
   const ModelUpdate& finish() override;
@@ -58,6 +63,7 @@ class DetailFitter final : public Fitter {
   [[nodiscard]] FitStatistics statistics() const override { return patches_->statistics(); }
 
  private:
+  void store_offsets(std::span<const std::uint32_t> changed);
   void store_offset(std::uint32_t patch);
   [[nodiscard]] Planes starting_texture() const;
   [[nodiscard]] std::vector<float> texel_weights() const;
@@ -73,6 +79,7 @@ class DetailFitter final : public Fitter {
   TexelMeans texel_means_;
   TextureSums texture_sums_;
   VertexMeans vertex_means_;
+  PatchMeans patch_means_;
   core::SampleBatch samples_;
   ModelUpdate update_;
 };
@@ -83,12 +90,24 @@ const ModelUpdate& DetailFitter::integrate(const core::Observation& observation)
   texture_sums_.integrate(observation, raster_);
   samples_ = observation.samples;
   vertex_means_.average(texel_means_.corners(), samples_);
-  update_ = patches_->PatchFitter::integrate(samples_);
-  for (const std::uint32_t patch : update_.elements) store_offset(patch);
+  patch_means_.integrate(samples_);
+  store_offsets(patches_->PatchFitter::integrate(samples_).elements);
   for (const std::uint32_t page : texel_means_.touched_pages()) {
     update_.elements.push_back(static_cast<std::uint32_t>(model_.patch_count()) + page);
   }
   return update_;
+}
+
+// Those of models that changed, and those whose mean did.
+void DetailFitter::store_offsets(std::span<const std::uint32_t> changed) {
+  update_.elements.clear();
+  std::ranges::set_union(changed, patch_means_.moved(), std::back_inserter(update_.elements));
+  core::parallel_for(
+      update_.elements.size(), threads_,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) store_offset(update_.elements[i]);
+      },
+      64);
 }
 
 // The texture holds the mean colour: a patch keeps how its model differs from its own mean.
@@ -99,6 +118,7 @@ void DetailFitter::store_offset(std::uint32_t patch) {
   } else {
     offset.coefficient[0] -= patches_->mean_over_views(patch);
   }
+  patch_means_.set_taken(patch);
   model_.offsets().store(patch, offset);
   model_.offsets().store_observed(patch, patches_->light_field().observed()[patch] != 0);
 }
@@ -108,7 +128,7 @@ const ModelUpdate& DetailFitter::finish() {
   for (std::uint32_t patch = 0; patch < model_.patch_count(); ++patch) store_offset(patch);
   Planes planes = starting_texture();
   solve_texture(texture_sums_.texels(), static_cast<std::size_t>(model_.texture().atlas().width),
-                threads_, planes);
+                mesh_, texel_means_.surface(), threads_, planes);
   model_.texture().set_texel_count(
       simplify_texture(model_.texture().atlas(), texel_weights(), noise(), threads_, planes));
   store_texture(planes);
@@ -127,7 +147,7 @@ Planes DetailFitter::starting_texture() const {
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     const auto& triangle = mesh_.triangles[t];
     for (const SurfaceTexel& texel : texel_means_.surface().of(t)) {
-      const TexelMean& mean = texel_means_.texels()[texel.texel_idx];
+      const WeightedMean& mean = texel_means_.texels()[texel.texel_idx];
       const bool seen_around = texture_sums_.texels()[texel.texel_idx].weight > 0;
       if (mean.weight == 0 && seen_around) continue;
       const Eigen::Vector3f around =

@@ -10,11 +10,6 @@
 namespace sheen::fitting::detail {
 namespace {
 
-constexpr float kWeightUnits = 64.0f;
-constexpr float kColourUnits = 4.0f;  // of a step of the image
-/// A texel takes no more when its sums could overflow: after 65,000 views that see it frontally.
-constexpr std::uint32_t kFull = 0xffffffffU / 1020U - 64U;
-
 using Rgb = std::array<float, 3>;
 
 /// Bilinear, 0 to 255, RGB; the four pixels exist.
@@ -35,15 +30,6 @@ Rgb read(const cv::Mat& image, const Eigen::Vector2f& at_px) {
   return {channel(2), channel(1), channel(0)};
 }
 
-void add(const Rgb& rgb, float cosine, TexelMean& mean) {
-  if (mean.weight > kFull) return;
-  const auto q = static_cast<std::uint32_t>(cosine * cosine * kWeightUnits + 0.5f);
-  mean.weight += q;
-  for (std::size_t channel = 0; channel < 3; ++channel) {
-    mean.colour[channel] += q * static_cast<std::uint32_t>(rgb[channel] * kColourUnits + 0.5f);
-  }
-}
-
 void add(const Rgb& rgb, const std::array<float, 3>& weight, CornerColours& corners) {
   for (std::size_t corner = 0; corner < 3; ++corner) {
     corners.weight[corner] += weight[corner];
@@ -55,7 +41,7 @@ void add(const Rgb& rgb, const std::array<float, 3>& weight, CornerColours& corn
   }
 }
 
-Texel stored(const TexelMean& mean) {
+Texel stored(const WeightedMean& mean) {
   const auto channel = [&](std::size_t c) {
     return static_cast<std::uint8_t>((mean.colour[c] + 2 * mean.weight) / (4 * mean.weight));
   };
@@ -89,22 +75,48 @@ void TexelMeans::integrate_triangle(std::uint32_t triangle_idx,
   corners = {};
   const std::optional<SeenTriangle> triangle = raster.triangle(triangle_idx);
   if (!triangle) return;
+  bool gaps = false;
   const auto without_gain = static_cast<float>(1 / observation.gain);
   for (const SurfaceTexel& texel : surface_.of(triangle_idx)) {
     const std::array<float, 3> weight{1.0f - texel.at_second - texel.at_third, texel.at_second,
                                       texel.at_third};
     const auto at_px = raster.place(*triangle, weight);
-    if (!at_px) continue;
+    if (!at_px) {
+      gaps = gaps || means_[texel.texel_idx].weight == 0;
+      continue;
+    }
     Rgb rgb = read(observation.image, *at_px);
     for (float& channel : rgb) channel = std::min(255.0f, channel * without_gain);
-    TexelMean& mean = means_[texel.texel_idx];
-    add(rgb, triangle->cosine(weight), mean);
+    WeightedMean& mean = means_[texel.texel_idx];
+    const float cosine = triangle->cosine(weight);
+    mean.add(rgb, cosine * cosine);
     add(rgb, weight, corners);
-    texture.texels()[texel.texel_idx] = stored(mean);
-    // Triangles of several threads may share a page.
-    std::atomic_ref(page_is_touched_[texture.page_of(texel.texel_idx)])
-        .store(1, std::memory_order_relaxed);
+    store(texel.texel_idx, stored(mean), texture);
   }
+  if (gaps) fill_gaps(triangle_idx, texture);
+}
+
+// What is not seen itself looks like the triangle around it.
+void TexelMeans::fill_gaps(std::uint32_t triangle_idx, SurfaceTexture& texture) {
+  const CornerColours& corners = corners_[triangle_idx];
+  const float weight = corners.weight[0] + corners.weight[1] + corners.weight[2];
+  if (!(weight > 0)) return;
+  Texel around;
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    around[channel] = static_cast<std::uint8_t>(
+        (corners.colour[0][channel] + corners.colour[1][channel] + corners.colour[2][channel]) /
+            weight +
+        0.5f);
+  }
+  for (const SurfaceTexel& texel : surface_.of(triangle_idx)) {
+    if (means_[texel.texel_idx].weight == 0) store(texel.texel_idx, around, texture);
+  }
+}
+
+// Triangles of several threads may share a page.
+void TexelMeans::store(std::uint32_t texel_idx, const Texel& texel, SurfaceTexture& texture) {
+  texture.texels()[texel_idx] = texel;
+  std::atomic_ref(page_is_touched_[texture.page_of(texel_idx)]).store(1, std::memory_order_relaxed);
 }
 
 std::vector<std::uint32_t> TexelMeans::touched_pages() const {

@@ -5,6 +5,7 @@
 #include "core/samples/observation.h"
 #include "fitting/detail/surface_texels.h"
 #include "fitting/detail/view_raster.h"
+#include "fitting/detail/weighted_mean.h"
 #include "fitting/texture/surface_texture.h"
 
 #include <array>
@@ -13,21 +14,6 @@
 #include <vector>
 
 namespace sheen::fitting::detail {
-
-/// The colours that views showed at a texel's place: weighted sums, the weight the squared cosine q
-/// between normal and view, because what is seen obliquely is seen unsharply. Integers, so that
-/// they do not depend on the order of the views.
-struct alignas(16) TexelMean {
-  std::uint32_t weight = 0;               ///< sum of q, in 64ths
-  std::array<std::uint32_t, 3> colour{};  ///< sum of q times the colour, RGB, in 1020ths
-
-  /// Sum of q.
-  [[nodiscard]] float observations() const { return static_cast<float>(weight) / 64.0f; }
-  /// The mean, 0 to 255; weight > 0.
-  [[nodiscard]] float mean(std::size_t channel) const {
-    return static_cast<float>(colour[channel]) / (4.0f * static_cast<float>(weight));
-  }
-};
 
 /// What one view shows of a triangle: the normal equations of three colours at its corners that are
 /// interpolated in between. Sums over its texels of the corners' barycentric weights w there.
@@ -52,7 +38,7 @@ class TexelMeans {
   /// Pages of the texture that the last view changed, ascending.
   [[nodiscard]] std::vector<std::uint32_t> touched_pages() const;
 
-  [[nodiscard]] const std::vector<TexelMean>& texels() const { return means_; }
+  [[nodiscard]] const std::vector<WeightedMean>& texels() const { return means_; }
   [[nodiscard]] const SurfaceTexels& surface() const { return surface_; }
   /// Of the last view, one for each triangle.
   [[nodiscard]] const std::vector<CornerColours>& corners() const { return corners_; }
@@ -60,11 +46,13 @@ class TexelMeans {
  private:
   void integrate_triangle(std::uint32_t triangle_idx, const core::Observation& observation,
                           const ViewRaster& raster, SurfaceTexture& texture);
+  void fill_gaps(std::uint32_t triangle_idx, SurfaceTexture& texture);
+  void store(std::uint32_t texel_idx, const Texel& texel, SurfaceTexture& texture);
 
   const core::Mesh& mesh_;
   int threads_;
   SurfaceTexels surface_;
-  std::vector<TexelMean> means_;
+  std::vector<WeightedMean> means_;
   std::vector<CornerColours> corners_;
   std::vector<std::uint8_t> page_is_touched_;
 };

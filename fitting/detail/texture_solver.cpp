@@ -11,7 +11,7 @@ namespace {
 /// Pull towards the given texture: as strong as a pixel that sees the texel's middle frontally.
 constexpr float kLambda = 1.0f;
 /// More bring nothing on views that were not seen.
-constexpr int kSteps = 4;
+constexpr int kSteps = 2;
 
 /// Units of the sums in the matrix: a pixel that sees the middle of a texel frontally adds 1.
 constexpr float kUnit = 1.0f / (kCosineUnits * kReadingUnits * kReadingUnits);
@@ -90,9 +90,56 @@ class System {
   std::vector<float> diagonal_;
 };
 
-void solve_channel(const System& system, std::size_t channel, std::vector<float>& texture) {
+/// Takes off a residual (of texels, each weighted with its pixels) its mean around every vertex,
+/// interpolated across the triangles.
+class SmoothPart {
+ public:
+  SmoothPart(std::span<const TexelSums> texels, const core::Mesh& mesh,
+             const SurfaceTexels& surface)
+      : texels_(texels), mesh_(mesh), surface_(surface), weight_(mesh.positions.size(), 0.0f) {
+    for_each([&](std::size_t vertex, float share, std::size_t texel) {
+      weight_[vertex] += share * weight_of(texel);
+    });
+  }
+
+  void remove_from(std::vector<float>& residual) const {
+    std::vector<float> mean(weight_.size(), 0.0f);
+    for_each([&](std::size_t vertex, float share, std::size_t texel) {
+      if (weight_[vertex] > 0.0f) mean[vertex] += share * residual[texel] / weight_[vertex];
+    });
+    for_each([&](std::size_t vertex, float share, std::size_t texel) {
+      residual[texel] -= weight_of(texel) * share * mean[vertex];
+    });
+  }
+
+ private:
+  /// Calls visit(vertex, its barycentric weight, texel).
+  template <typename Visit>
+  void for_each(const Visit& visit) const {
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      const auto& corner = mesh_.triangles[t];
+      for (const SurfaceTexel& texel : surface_.of(t)) {
+        visit(corner[0], 1.0f - texel.at_second - texel.at_third, texel.texel_idx);
+        visit(corner[1], texel.at_second, texel.texel_idx);
+        visit(corner[2], texel.at_third, texel.texel_idx);
+      }
+    }
+  }
+  [[nodiscard]] float weight_of(std::size_t texel) const {
+    return static_cast<float>(texels_[texel].weight) * (kUnit * kReadingUnits);
+  }
+
+  std::span<const TexelSums> texels_;
+  const core::Mesh& mesh_;
+  const SurfaceTexels& surface_;
+  std::vector<float> weight_;
+};
+
+void solve_channel(const System& system, const SmoothPart& smooth, std::size_t channel,
+                   std::vector<float>& texture) {
   std::vector<float> r(texture.size(), 0.0f);
   system.residual(texture, channel, r);
+  smooth.remove_from(r);
   std::vector<float> p = r;
   std::vector<float> Ap(texture.size(), 0.0f);
   const auto dot = [&](const std::vector<float>& a, const std::vector<float>& b) {
@@ -140,12 +187,13 @@ Planes mean_texture(std::span<const TexelSums> texels) {
   return planes;
 }
 
-void solve_texture(std::span<const TexelSums> texels, std::size_t width, int threads,
-                   Planes& texture) {
+void solve_texture(std::span<const TexelSums> texels, std::size_t width, const core::Mesh& mesh,
+                   const SurfaceTexels& surface, int threads, Planes& texture) {
   if (width < 3 || texels.size() / width < 3) return;
   const System system(texels, width, threads);
+  const SmoothPart smooth(texels, mesh, surface);
   for (std::size_t channel = 0; channel < 3; ++channel) {
-    solve_channel(system, channel, texture[channel]);
+    solve_channel(system, smooth, channel, texture[channel]);
   }
 }
 

@@ -134,4 +134,19 @@ std::optional<Eigen::Vector2f> ViewRaster::place(const SeenTriangle& triangle,
   return at_px;
 }
 
+bool ViewRaster::is_at_outline(float x_px, float y_px) const {
+  if (!(x_px >= static_cast<float>(box_.left) && x_px <= static_cast<float>(box_.right) &&
+        y_px >= static_cast<float>(box_.top) && y_px <= static_cast<float>(box_.bottom))) {
+    return false;
+  }
+  const auto x = static_cast<int>(std::lround(x_px));
+  const auto y = static_cast<int>(std::lround(y_px));
+  for (int below = -1; below <= 1; ++below) {
+    for (int right = -1; right <= 1; ++right) {
+      if (depth_.at(x + right, y + below) == 0.0f) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace sheen::fitting::detail

@@ -62,6 +62,9 @@ class ViewRaster {
   [[nodiscard]] std::optional<Eigen::Vector2f> place(const SeenTriangle& triangle,
                                                      const std::array<float, 3>& weight) const;
 
+  /// Whether a pixel around a place shows nothing of the mesh.
+  [[nodiscard]] bool is_at_outline(float x_px, float y_px) const;
+
   /// Calls `visit(pixel)` for every pixel that shows the triangle, row by row. May be called from
   /// several threads at once.
   template <typename Visit>

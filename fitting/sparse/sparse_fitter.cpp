@@ -22,7 +22,7 @@ namespace {
 
 /// What may be spent on improving patches, per sample of a view; a step costs as many units as the
 /// patch has kept samples, and as many again as kStepOverhead.
-constexpr std::size_t kUnitsPerSample = 1;
+constexpr std::size_t kUnitsPerSample = 4;
 constexpr std::size_t kStepOverhead = 16;
 /// Patches of a view that may be improved in any case.
 constexpr std::size_t kFewestSteps = 32;

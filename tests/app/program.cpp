@@ -41,6 +41,10 @@ ProgramRun run_sheen(const std::vector<std::string>& arguments) {
   return run;
 }
 
+const char* sheen_program() {
+  return SHEEN_PROGRAM;
+}
+
 std::filesystem::path sample_session() {
   return std::filesystem::path(SHEEN_SOURCE_DIR) / "sample_data" / "glossy";
 }

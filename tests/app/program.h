@@ -23,6 +23,9 @@ struct ProgramRun {
 /// Runs the built `sheen` with these arguments, without a shell, and waits for its end.
 ProgramRun run_sheen(const std::vector<std::string>& arguments);
 
+/// Path of the built program.
+const char* sheen_program();
+
 /// The recorded session that comes with the source.
 std::filesystem::path sample_session();
 

@@ -13,11 +13,12 @@ MODULES = {
     "core": {"core"},
     "capture": {"core", "capture"},
     "fitting": {"core", "fitting"},
+    "reconstruction": {"core", "capture", "reconstruction"},
     "exporters": {"core", "fitting", "exporters"},
     "render": {"core", "fitting", "render"},
     "pipeline": {"core", "capture", "fitting", "pipeline"},
     "evaluation": {"core", "capture", "fitting", "render", "pipeline", "evaluation"},
-    "app": {"core", "capture", "fitting", "exporters", "render", "pipeline", "evaluation", "app"},
+    "app": {"core", "capture", "fitting", "reconstruction", "exporters", "render", "pipeline", "evaluation", "app"},
 }
 # Programs that measure, proofs, bindings: whatever they look at, and their own. No module may include
 # them.

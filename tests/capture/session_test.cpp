@@ -3,6 +3,7 @@
 
 #include "capture/calibration/camera_file.h"
 #include "capture/pose/board.h"
+#include "capture/session/session_file.h"
 #include "tests/capture/expect_bad_input.h"
 #include "tests/capture/rendered_board.h"
 #include "tests/support/temporary_folder.h"
@@ -162,6 +163,18 @@ TEST(Session, NamesMissingFiles) {
   files.document["frames"] = {{"images", "images/%04d.png"}};
   files.document["object"]["mesh"] = "absent.ply";
   files.expect_refused("absent.ply");
+}
+
+TEST(Session, MayBeWithoutAnObjectUntilOneIsMade) {
+  SessionFiles files;
+  files.document.erase("object");
+  EXPECT_TRUE(files.open().mesh.empty());
+  const auto file = files.folder() / "session.json";
+  write_object(file, file, "object.ply");
+  const Session session = open_session(files.folder());
+  EXPECT_EQ(session.mesh, files.folder() / "object.ply");
+  EXPECT_TRUE(session.board_from_object.isApprox(Eigen::Isometry3d::Identity(), 0));
+  EXPECT_TRUE(session.warnings.empty());
 }
 
 TEST(Session, NeedsOneKindOfFramesAndOneKindOfPose) {

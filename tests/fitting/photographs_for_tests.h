@@ -30,13 +30,12 @@ struct Photograph {
 class Photographs {
  public:
   Photographs(core::Mesh mesh, int views, const Look& look)
+      : Photographs(std::move(mesh), poses_all_round(views), look) {}
+
+  Photographs(core::Mesh mesh, const std::vector<Eigen::Isometry3d>& poses, const Look& look)
       : mesh_(std::move(mesh)), camera_(render::testing::plain_camera(160, 120)) {
     const core::RayCaster caster(mesh_);
-    for (int i = 0; i < views; ++i) {
-      const double angle = 2.4 * i;
-      const Eigen::Vector3d from(std::cos(angle), std::sin(angle), 0.8 * std::sin(1.1 * i));
-      views_.push_back(take(caster, render::testing::looking_at_origin(from, 0.36), look));
-    }
+    for (const Eigen::Isometry3d& pose : poses) views_.push_back(take(caster, pose, look));
   }
 
   [[nodiscard]] const core::Mesh& mesh() const { return mesh_; }
@@ -57,6 +56,16 @@ class Photographs {
   }
 
  private:
+  static std::vector<Eigen::Isometry3d> poses_all_round(int views) {
+    std::vector<Eigen::Isometry3d> poses;
+    for (int i = 0; i < views; ++i) {
+      const double angle = 2.4 * i;
+      const Eigen::Vector3d from(std::cos(angle), std::sin(angle), 0.8 * std::sin(1.1 * i));
+      poses.push_back(render::testing::looking_at_origin(from, 0.36));
+    }
+    return poses;
+  }
+
   [[nodiscard]] Photograph take(const core::RayCaster& caster, const Eigen::Isometry3d& pose,
                                 const Look& look) const {
     Photograph photograph{

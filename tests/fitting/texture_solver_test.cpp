@@ -14,6 +14,10 @@ namespace {
 constexpr std::size_t kWidth = 24;
 constexpr std::size_t kHeight = 18;
 
+// Without vertices every difference belongs to the texture.
+const core::Mesh kNoMesh;
+const SurfaceTexels kNoSurface{core::Atlas{}};
+
 std::vector<TexelSums> empty_sums() {
   return std::vector<TexelSums>(kWidth * kHeight);
 }
@@ -120,7 +124,7 @@ class Sharpening : public ::testing::Test {
 TEST_F(Sharpening, ComesNearerToTheTruth) {
   Planes texture = mean_texture(sums_);
   const double before = error(texture[0]);
-  solve_texture(sums_, kWidth, 1, texture);
+  solve_texture(sums_, kWidth, kNoMesh, kNoSurface, 1, texture);
   EXPECT_GT(before, 10);
   EXPECT_LT(error(texture[0]), 0.4 * before);
 }
@@ -129,23 +133,83 @@ TEST_F(Sharpening, ComesNearerToTheTruth) {
 // less than the mean rounding of its pixels, half a step.
 TEST_F(Sharpening, LeavesTheTruthAlone) {
   Planes texture{truth_, truth_, truth_};
-  solve_texture(sums_, kWidth, 1, texture);
+  solve_texture(sums_, kWidth, kNoMesh, kNoSurface, 1, texture);
   EXPECT_LT(error(texture[0]), 0.5);
 }
 
 TEST_F(Sharpening, ThreadsDoNotChangeABit) {
   Planes one = mean_texture(sums_);
   Planes many = one;
-  solve_texture(sums_, kWidth, 1, one);
-  solve_texture(sums_, kWidth, 5, many);
+  solve_texture(sums_, kWidth, kNoMesh, kNoSurface, 1, one);
+  solve_texture(sums_, kWidth, kNoMesh, kNoSurface, 5, many);
   EXPECT_EQ(one, many);
+}
+
+// A square of two triangles, a texel per 100th of its side, seen everywhere.
+class SeenSquare : public ::testing::Test {
+ protected:
+  SeenSquare()
+      : mesh_{.positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+              .normals = std::vector<Eigen::Vector3f>(4, Eigen::Vector3f::UnitZ()),
+              .triangles = {{0, 1, 2}, {0, 2, 3}}},
+        atlas_(core::make_atlas(mesh_, 0.01f, 1 << 20)),
+        surface_(atlas_),
+        width_(static_cast<std::size_t>(atlas_.width)) {}
+
+  /// Sums of pixels of these colours, one at every texel's centre that a reading touches.
+  template <typename ColourOf>
+  [[nodiscard]] std::vector<TexelSums> sums_of(const ColourOf& colour_of) const {
+    std::vector<TexelSums> sums(atlas_.texel_count());
+    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+      for (const SurfaceTexel& texel : surface_.of(t)) {
+        const std::size_t x = texel.texel_idx % width_;
+        const std::size_t y = texel.texel_idx / width_;
+        const auto value = static_cast<std::uint32_t>(colour_of(x, y));
+        add_pixel({sums.data(), width_},
+                  {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}, 1,
+                  {value, value, value});
+      }
+    }
+    return sums;
+  }
+
+  [[nodiscard]] Planes solved(const std::vector<TexelSums>& sums) const {
+    Planes texture;
+    for (auto& plane : texture) plane.assign(sums.size(), 100.0f);
+    solve_texture(sums, width_, mesh_, surface_, 1, texture);
+    return texture;
+  }
+
+  core::Mesh mesh_;
+  core::Atlas atlas_;
+  SurfaceTexels surface_;
+  std::size_t width_;
+};
+
+// Shares of the corners add up to one, so each corner's mean is the constant and takes it off.
+TEST_F(SeenSquare, LeavesToTheVerticesWhatIsTheSameEverywhere) {
+  const auto sums = sums_of([](std::size_t, std::size_t) { return 120; });
+  const Planes texture = solved(sums);
+  for (const float texel : texture[1]) EXPECT_NEAR(texel, 100.0f, 1e-3f);
+}
+
+// A chequerboard's mean around any corner is zero, but for the edges: nothing is taken off, and
+// pixels at centres meet texels only: t = (100 lambda + 100 +- 20) / (1 + lambda) with lambda 1.
+TEST_F(SeenSquare, TakesWhatChangesBetweenVertices) {
+  const auto sign = [](std::size_t x, std::size_t y) { return (x + y) % 2 == 0 ? 1 : -1; };
+  const auto sums = sums_of([&](std::size_t x, std::size_t y) { return 100 + 20 * sign(x, y); });
+  const Planes texture = solved(sums);
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (sums[i].weight == 0) continue;
+    EXPECT_NEAR(texture[1][i], 100 + 10 * sign(i % width_, i / width_), 0.2);
+  }
 }
 
 TEST(SolveTexture, LeavesTexelsWithoutPixels) {
   auto sums = empty_sums();
   see(sums, 5, 5, 0.5f, 0.5f, 1, 100);
   Planes texture = filled(70);
-  solve_texture(sums, kWidth, 1, texture);
+  solve_texture(sums, kWidth, kNoMesh, kNoSurface, 1, texture);
   for (std::size_t i = 0; i < sums.size(); ++i) {
     if (sums[i].weight == 0) {
       EXPECT_EQ(texture[0][i], 70.0f);
@@ -158,7 +222,7 @@ TEST(SolveTexture, LeavesTexelsWithoutPixels) {
 TEST(SolveTexture, TakesTexturesWithoutInside) {
   std::vector<TexelSums> sums(2);
   Planes texture{std::vector<float>{1, 2}, std::vector<float>{1, 2}, std::vector<float>{1, 2}};
-  solve_texture(sums, 2, 1, texture);
+  solve_texture(sums, 2, kNoMesh, kNoSurface, 1, texture);
   EXPECT_EQ(texture[0], (std::vector<float>{1, 2}));
 }
 

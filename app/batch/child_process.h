@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace sheen::app {
+
+/// Another program, or another run of this one. It is asked to end when its owner goes or dies.
+class ChildProcess {
+ public:
+  /// Starts `program` (found as a shell finds it) with `arguments`; both streams are added to the
+  /// file `log`. Throws core::Error (run_failed); a program that is not there ends with exit code
+  /// 127. To be called while this process has one thread.
+  ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
+               const std::filesystem::path& log);
+  ~ChildProcess();
+  ChildProcess(ChildProcess&& other) noexcept;
+  ChildProcess& operator=(ChildProcess&&) = delete;
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  /// Becomes readable when the process has ended.
+  [[nodiscard]] int handle() const { return handle_; }
+
+  /// How it ended (docs/commands.md; 128 + signal when one ended it); nothing while it runs.
+  std::optional<int> exit_code();
+
+ private:
+  pid_t process_ = -1;
+  int handle_ = -1;
+};
+
+}  // namespace sheen::app

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+#include "app/state/joined_model.h"
+
+#include "app/interrupt.h"
+#include "core/diagnostics/error.h"
+#include "fitting/model_file/model_file.h"
+
+#include <fmt/format.h>
+
+#include <map>
+
+namespace sheen::app {
+namespace {
+
+fitting::ViewsDone shower(Progress& progress) {
+  return [&progress](std::size_t views) {
+    throw_if_interrupted();
+    progress.show(static_cast<int>(views));
+  };
+}
+
+struct Frames {
+  int count = 0;
+  int first = 0;
+  int last = 0;
+};
+
+/// In the order of the names.
+std::map<std::string, Frames> frames_by_session(const States& states,
+                                                std::span<const fitting::JoinedView> views) {
+  std::map<std::string, Frames> sessions;
+  for (const fitting::JoinedView& view : views) {
+    const fitting::StateView& name = states[view.state]->views()[view.view];
+    Frames& frames =
+        sessions.try_emplace(name.session, Frames{0, name.frame, name.frame}).first->second;
+    ++frames.count;
+    frames.first = std::min(frames.first, name.frame);
+    frames.last = std::max(frames.last, name.frame);
+  }
+  return sessions;
+}
+
+}  // namespace
+
+void write_joined_model(const States& states, std::span<const fitting::JoinedView> views,
+                        const JoinedOutputs& outputs, const CommandContext& context) {
+  nlohmann::ordered_json document{{"views", views.size()}, {"sessions", nlohmann::json::array()}};
+  std::string text;
+  for (const auto& [name, frames] : frames_by_session(states, views)) {
+    document["sessions"].push_back({{"name", name},
+                                    {"views", frames.count},
+                                    {"first_frame", frames.first},
+                                    {"last_frame", frames.last}});
+    text += fmt::format("{}  {} views, frames {} to {}\n", name, frames.count, frames.first,
+                        frames.last);
+  }
+  // The model first: when this ends between the two, the old state still gives both.
+  const int count = static_cast<int>(views.size());
+  if (!outputs.model.empty()) {
+    Progress progress = context.progress("fitting", count);
+    const fitting::JoinedFit fit =
+        fitting::fit_joined(states, views, context.threads, shower(progress));
+    fitting::write_model(outputs.model, states.front()->header().mesh, fit.fitter->light_field(),
+                         fit.seen);
+    document["samples"] = fit.fitter->statistics().samples;
+    document["representation"] = states.front()->header().representation;
+    document["model"] = outputs.model.string();
+    text += fmt::format("written  {}\n", outputs.model.string());
+  }
+  if (!outputs.state.empty()) {
+    Progress progress = context.progress("writing", count);
+    fitting::write_joined(outputs.state, states, views, shower(progress));
+    document["state"] = outputs.state.string();
+    text += fmt::format("written  {}\n", outputs.state.string());
+  }
+  context.publish(document, text);
+}
+
+std::string fault_of_model_name(const std::string& path) {
+  return path.ends_with(".glb") ? std::string() : path + " does not end in .glb";
+}
+
+}  // namespace sheen::app

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+
+namespace sheen::core {
+
+/// While one exists no other process writes to the folder that asks for a lock, too: `.lock` in it
+/// is held by flock, which ends with the process however it ends, and names its holder. The file
+/// stays; an unheld one means nothing.
+class FolderLock {
+ public:
+  /// Creates the folder where it is missing. Throws Error: bad_input when another process holds the
+  /// lock (it names process and machine) or the folder cannot be written.
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+  FolderLock(FolderLock&&) = delete;
+  FolderLock& operator=(FolderLock&&) = delete;
+
+ private:
+  int file_ = -1;
+};
+
+}  // namespace sheen::core

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+#include "fitting/depth_quads/quad_fitter.h"
+
+#include "core/mesh/neighbours.h"
+#include "core/visibility/depth_image.h"
+#include "fitting/depth_quads/depth_quads.h"
+#include "fitting/kept_views/mean_keeper.h"
+
+#include <algorithm>
+
+namespace sheen::fitting::depth_quads {
+namespace {
+
+class QuadFitter final : public Fitter {
+ public:
+  QuadFitter(const core::Mesh& mesh, const Options& options, int threads)
+      : depth_(mesh, threads), means_(mesh, threads), model_(options, mesh.positions.size()) {}
+
+  const ModelUpdate& integrate(const core::Observation& observation) override;
+  const ModelUpdate& finish() override;
+  [[nodiscard]] const LightField& light_field() const override { return model_; }
+  [[nodiscard]] FitStatistics statistics() const override { return means_.statistics(); }
+
+ private:
+  core::DepthImage depth_;
+  MeanKeeper means_;
+  DepthQuads model_;
+  ModelUpdate update_;
+};
+
+const ModelUpdate& QuadFitter::integrate(const core::Observation& observation) {
+  update_.elements.clear();
+  means_.integrate(observation);
+  model_.set_means(means_.means());
+  depth_.draw(observation.view, observation.image.size(), observation.camera_from_object);
+  if (depth_.box().empty()) return update_;
+  const Options& options = model_.options();
+  const auto levels = quad_levels(depth_.box().size(), options.spacing_px, options.levels);
+  QuadDepths depths = quad_depths(depth_.depth_m(), levels, options.median);
+  // A photograph that misses all middles of the finest cells shows nothing.
+  const auto finest = depths.codes.begin() + static_cast<std::ptrdiff_t>(levels.front().size());
+  if (std::all_of(depths.codes.begin(), finest, [](auto code) { return code == 0; })) {
+    return update_;
+  }
+  update_.elements = {static_cast<std::uint32_t>(model_.element_count())};
+  model_.add(keep_view(observation, depth_, options.views.quality), std::move(depths));
+  return update_;
+}
+
+const ModelUpdate& QuadFitter::finish() {
+  update_.elements.clear();
+  means_.finish();
+  model_.set_means(means_.means());
+  return update_;
+}
+
+}  // namespace
+
+std::unique_ptr<Fitter> make_quad_fitter(const core::Mesh& mesh, const Options& options,
+                                         int threads) {
+  options.check();
+  return std::make_unique<QuadFitter>(mesh, options, threads);
+}
+
+}  // namespace sheen::fitting::depth_quads

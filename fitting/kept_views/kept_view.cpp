@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "fitting/kept_views/kept_view.h"
+
+#include "core/diagnostics/error.h"
+#include "core/image/jpeg.h"
+
+#include <opencv2/imgproc.hpp>
+
+#include <cassert>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+namespace sheen::fitting {
+namespace {
+
+constexpr int kLeastQuality = 1;
+constexpr int kBestQuality = 100;
+constexpr int kLargestCache_mb = 1 << 20;
+
+/// Side of the blocks that a JPEG with halved chroma codes on their own, pixels.
+constexpr int kBlock_px = 16;
+/// Pixels around the object that readings between pixels and edges of depth may touch.
+constexpr int kMargin_px = 4;
+
+/// Greys the blocks in which nothing is near the object. Blocks are coded on their own, so the
+/// others do not change.
+void grey_background(const cv::Mat& depth_m, cv::Mat& image) {
+  const cv::Size side(2 * kMargin_px + 1, 2 * kMargin_px + 1);
+  cv::Mat near;
+  cv::dilate(depth_m > 0.0f, near, cv::getStructuringElement(cv::MORPH_RECT, side));
+  for (int y = 0; y < image.rows; y += kBlock_px) {
+    for (int x = 0; x < image.cols; x += kBlock_px) {
+      const cv::Rect block = cv::Rect(x, y, kBlock_px, kBlock_px) & cv::Rect({}, image.size());
+      if (cv::countNonZero(near(block)) == 0) image(block).setTo(cv::Scalar::all(128));
+    }
+  }
+}
+
+void refuse_outside(const char* name, int value, int least, int most) {
+  if (value >= least && value <= most) return;
+  throw std::invalid_argument(std::string(name) + " is " + std::to_string(value) + ", allowed: " +
+                              std::to_string(least) + " to " + std::to_string(most));
+}
+
+}  // namespace
+
+cv::Mat KeptView::pixels() const {
+  if (auto image = core::decode_jpeg(std::as_bytes(std::span(jpeg)), crop.size())) return *image;
+  throw core::bad_input("the model", "holds a photograph that cannot be decoded",
+                        "make it again with sheen replay");
+}
+
+Eigen::Vector3d KeptView::eye() const {
+  return camera_from_object.linear().transpose() * -camera_from_object.translation();
+}
+
+KeptView keep_view(const core::Observation& observation, const core::DepthImage& depth,
+                   int quality) {
+  assert(!depth.box().empty());
+  cv::Mat image;
+  observation.image(depth.box()).convertTo(image, CV_8UC3, 1 / observation.gain);
+  grey_background(depth.depth_m(), image);
+  return {observation.camera, observation.camera_from_object, depth.box(),
+          core::encode_jpeg(image, quality)};
+}
+
+void add_options(KeptViewOptions& options, OptionTable& table) {
+  table.push_back(number_option("image-quality", options.quality, kLeastQuality, kBestQuality,
+                                "Quality of the JPEGs in which photographs are kept"));
+  table.push_back(number_option("image-cache-mb", options.cache_mb, 0, kLargestCache_mb,
+                                "Photographs that stay decoded while the model is drawn, MB"));
+}
+
+void check(const KeptViewOptions& options) {
+  refuse_outside("image-quality", options.quality, kLeastQuality, kBestQuality);
+  refuse_outside("image-cache-mb", options.cache_mb, 0, kLargestCache_mb);
+}
+
+}  // namespace sheen::fitting

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "fitting/confidence/confidence.h"
+#include "fitting/fitter.h"
+#include "fitting/state/state_file.h"
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace sheen::fitting {
+
+/// A view of one of several states.
+struct JoinedView {
+  std::size_t state = 0;
+  std::size_t view = 0;
+};
+
+/// Their views in the one order that all states have, whatever the order of `states`: joining is
+/// associative and commutative to the last bit. Throws core::Error (bad_input) when they are not
+/// fitted alike, not over one mesh, or hold a view twice.
+std::vector<JoinedView> join(std::span<const std::unique_ptr<StateReader>> states);
+
+/// Gets the number of views done.
+using ViewsDone = std::function<void(std::size_t)>;
+
+/// A state of these views. `path` may be one of the states'.
+void write_joined(const std::filesystem::path& path,
+                  std::span<const std::unique_ptr<StateReader>> states,
+                  std::span<const JoinedView> views, const ViewsDone& done);
+
+/// The fit of these views, finished.
+struct JoinedFit {
+  std::unique_ptr<Fitter> fitter;
+  SeenDirections seen;
+};
+/// Fits them one after the other: what a session of exactly these frames gives. The states outlive
+/// the result.
+JoinedFit fit_joined(std::span<const std::unique_ptr<StateReader>> states,
+                     std::span<const JoinedView> views, int threads, const ViewsDone& done);
+
+}  // namespace sheen::fitting

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/session/session.h"
+#include "core/mesh/mesh.h"
+#include "core/samples/observation.h"
+#include "pipeline/evidence/corner_evidence.h"
+#include "pipeline/evidence/finding.h"
+#include "pipeline/evidence/light_evidence.h"
+#include "pipeline/evidence/outline_evidence.h"
+#include "pipeline/evidence/thinned.h"
+
+#include <Eigen/Geometry>
+
+#include <optional>
+#include <vector>
+
+namespace sheen::pipeline {
+
+/// What a recording's own data show to be wrong with it, by the trace that each fault leaves:
+/// corners of tags, outlines, brightness, grain, and from where the object was seen. Looks at every
+/// fourth frame, and in long recordings at fewer. The result does not
+/// depend on what is fitted.
+class CaptureEvidence {
+ public:
+  /// `mesh` must outlive this; `patch_count` is that of the samples. `board` is that of the tags
+  /// that give the poses, if they do.
+  CaptureEvidence(const capture::Session& session, const core::Mesh& mesh, std::size_t patch_count,
+                  const std::optional<capture::Board>& board);
+
+  /// A posed frame that is fitted, and what it shows of the surface.
+  void look_at(const capture::Frame& frame, const Eigen::Isometry3d& camera_from_board,
+               const core::Observation& observation);
+
+  /// What can be said so far of a recording that goes on.
+  [[nodiscard]] std::vector<Finding> faults() const;
+
+  /// Everything, after the last frame.
+  [[nodiscard]] std::vector<Finding> findings() const;
+
+  [[nodiscard]] int frames() const { return static_cast<int>(azimuths_rad_.size()); }
+
+ private:
+  void measure_grain(const cv::Mat& image);
+  [[nodiscard]] double grain() const;
+  [[nodiscard]] std::optional<Finding> coverage() const;
+
+  Eigen::Isometry3d board_from_object_;
+  Eigen::Vector3d middle_;  ///< of the object, in its frame
+  std::optional<CornerEvidence> corners_;
+  OutlineEvidence outline_;
+  LightEvidence light_;
+  Thinned<double> grains_;  ///< standard deviation of the noise, grey levels
+  std::optional<Eigen::Isometry3d> last_pose_;
+  int last_index_ = 0;
+  std::vector<float> azimuths_rad_;  ///< of the cameras about the object, one per frame
+};
+
+}  // namespace sheen::pipeline

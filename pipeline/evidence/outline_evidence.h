@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/registration/contour.h"
+#include "core/geometry/camera.h"
+#include "core/mesh/mesh.h"
+#include "pipeline/evidence/finding.h"
+#include "pipeline/evidence/thinned.h"
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <opencv2/core/mat.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace sheen::pipeline {
+
+/// Where the images have the object's outline, against where mesh and pose put it: a mesh of
+/// another size or place is off in all views alike, an object that was moved is off from some frame
+/// on.
+class OutlineEvidence {
+ public:
+  /// `mesh` must outlive this.
+  explicit OutlineEvidence(const core::Mesh& mesh);
+
+  /// `image` is CV_8UC3, BGR.
+  void look_at(int frame_index, const cv::Mat& image, const core::CameraModel& camera,
+               const Eigen::Isometry3d& camera_from_object);
+
+  [[nodiscard]] std::vector<Finding> findings() const;
+
+  static constexpr int kUnknowns = 7;  ///< shift, turn about the middle, growth; all in metres
+  using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
+  using Vector = Eigen::Matrix<double, kUnknowns, 1>;
+
+  /// A place of the outline that the image shows, too.
+  struct Match {
+    Vector outward_by_unknown;  ///< px per metre, object frame
+    double offset_px = 0;       ///< of the image's edge, outwards
+    double weight = 0;
+  };
+  struct View {
+    int frame_index = 0;
+    int points = 0;  ///< matched or not
+    double px_per_m = 0;
+    std::vector<Match> matches;
+  };
+
+  /// One motion and growth of the object for all views.
+  struct Misplacement {
+    Vector unknowns = Vector::Zero();
+    double shift_sigma_m = 0;   ///< of the shift, worst direction, from the views' disagreement
+    double growth_sigma_m = 0;  ///< of the growth at the radius
+    double residual_px = 0;     ///< median distance that is left
+  };
+  [[nodiscard]] std::optional<Misplacement> misplacement() const;
+
+  /// A shift that begins with one frame.
+  struct Jump {
+    int frame_index = 0;
+    Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();
+    double sigma_m = 0;
+  };
+  [[nodiscard]] std::optional<Jump> jump() const;
+
+  [[nodiscard]] double radius_m() const { return radius_m_; }
+  [[nodiscard]] double px_per_m() const;
+
+ private:
+  capture::ContourFinder contours_;
+  double radius_m_ = 0;
+  Thinned<View> views_;
+};
+
+}  // namespace sheen::pipeline

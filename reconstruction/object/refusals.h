@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/pose/board.h"
+#include "reconstruction/hull/visual_hull.h"
+#include "reconstruction/stage/stage_map.h"
+#include "reconstruction/views/view_set.h"
+
+#include <filesystem>
+
+namespace sheen::reconstruction {
+
+/// What makes a shape untellable, each with what to film instead. All throw core::Error (bad_input)
+/// that names `session`.
+
+/// Some side is seen by no view across: silhouettes say nothing of the depth there.
+void refuse_narrow_range(const std::filesystem::path& session, const capture::Board& board,
+                         const ViewSet& views);
+
+/// Share of the texels within the board's tags that no view shows, and refuses when that is most.
+float refuse_hidden_sheet(const std::filesystem::path& session, const capture::Board& board,
+                          const StageMap& map);
+
+/// No component at all.
+void refuse_empty_sheet(const std::filesystem::path& session, const Components& components);
+
+/// More than one object, or one that stands beside the tags. There is at least one component.
+void refuse_what_stands_there(const std::filesystem::path& session, const capture::Board& board,
+                              const Components& components);
+
+/// Silhouettes that the hull, which all of them share, leaves bare: the object moved.
+void refuse_moved_object(const std::filesystem::path& session, float covered_share);
+
+}  // namespace sheen::reconstruction

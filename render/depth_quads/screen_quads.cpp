@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: MIT
+#include "render/depth_quads/screen_quads.h"
+
+#include "core/concurrency/parallel_for.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+namespace sheen::render {
+namespace {
+
+using fitting::KeptView;
+using fitting::depth_quads::QuadLevel;
+using fitting::depth_quads::QuadView;
+
+/// A quad has the depth of its middle; a surface at 60 degrees differs by 0.9 sides at its border,
+/// and two such quads by twice that.
+constexpr float kToleranceSides = 2.0f;
+/// Photographs nearer than this count alike, radians.
+constexpr double kLeastAngle = 0.01;
+/// Of quads in which two surfaces may be mixed.
+constexpr float kMixedWeight = 0.02f;
+/// Of quads that stand alone in depth: what they show counts where there is nothing else.
+constexpr float kFlierWeight = 1e-4f;
+
+/// What all quads of a photograph share.
+struct Sheet {
+  const KeptView& photograph;
+  const QuadView& quads;
+  const QuadLevel& level;
+  const std::uint16_t* codes;  ///< of the level
+  const std::vector<Eigen::Vector2f>& nodes;
+  double enlargement_px;
+  const QuadCamera& viewer;
+  Eigen::Isometry3d viewer_from_photograph;
+  Eigen::Vector3d viewer_eye;  ///< in the photograph's frame
+  float pixel_angle;           ///< of the photograph
+};
+
+std::size_t cell_idx(const QuadLevel& level, int i, int j) {
+  return static_cast<std::size_t>(j) * static_cast<std::size_t>(level.columns) +
+         static_cast<std::size_t>(i);
+}
+
+/// How much a quad's colour counts for what stands around it: all where every neighbour goes on at
+/// its depth, little beside a hole or a jump, hardly where no neighbour does: a flier.
+float certainty(const Sheet& sheet, int i, int j, float depth_m, float tolerance) {
+  const QuadLevel& level = sheet.level;
+  int present = 0;
+  int continuing = 0;
+  for (const auto& [di, dj] : {std::array{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
+    const int x = i + di;
+    const int y = j + dj;
+    if (x < 0 || y < 0 || x >= level.columns || y >= level.rows) continue;
+    const std::uint16_t code = sheet.codes[cell_idx(level, x, y)];
+    if (code == 0) continue;
+    ++present;
+    const float difference_m = std::abs(sheet.quads.depths.depth_m(code) - depth_m);
+    if (difference_m <= tolerance * depth_m) ++continuing;
+  }
+  if (present > 0 && continuing == 0) return kFlierWeight;
+  return continuing == 4 ? 1.0f : kMixedWeight;
+}
+
+/// The pixels between four corners in the viewer's frame; nothing when one has no pixel.
+std::optional<cv::Rect2d> pixel_box(const std::array<Eigen::Vector3d, 4>& corners,
+                                    const core::CameraModel& camera) {
+  Eigen::AlignedBox2d box;
+  for (const Eigen::Vector3d& corner : corners) {
+    const auto pixel = camera.project(corner);
+    if (!pixel) return std::nullopt;
+    box.extend(*pixel);
+  }
+  return cv::Rect2d(box.min().x(), box.min().y(), box.sizes().x(), box.sizes().y());
+}
+
+std::optional<ScreenQuad> screen_quad(const Sheet& sheet, int i, int j) {
+  const QuadLevel& level = sheet.level;
+  const std::uint16_t code = sheet.codes[cell_idx(level, i, j)];
+  if (code == 0) return std::nullopt;
+  const double depth_m = static_cast<double>(sheet.quads.depths.depth_m(code));
+  if (!(sheet.viewer_eye.z() < depth_m)) return std::nullopt;  // seen from behind
+
+  // Enlarge the cell around its middle, and put it at its depth.
+  const auto row = static_cast<std::size_t>(level.columns) + 1;
+  const Eigen::Vector2f* const upper = sheet.nodes.data() + static_cast<std::size_t>(j) * row + i;
+  const Eigen::Vector2d a = upper[0].cast<double>();
+  const Eigen::Vector2d b = upper[1].cast<double>();
+  const Eigen::Vector2d c = upper[row].cast<double>();
+  const Eigen::Vector2d d = upper[row + 1].cast<double>();
+  const double side_px = level.spacing_px + 2 * sheet.enlargement_px;
+  const double larger = side_px / level.spacing_px;
+  const Eigen::Vector2d along = larger / 2 * (b + d - a - c);
+  const Eigen::Vector2d down = larger / 2 * (c + d - a - b);
+  const Eigen::Vector2d first = (a + b + c + d) / 4 - (along + down) / 2;
+  if (!(first + along + down).allFinite()) return std::nullopt;
+  const auto in_viewer = [&](const Eigen::Vector2d& vector) -> Eigen::Vector3d {
+    return sheet.viewer_from_photograph.linear() *
+           Eigen::Vector3d(depth_m * vector.x(), depth_m * vector.y(), 0);
+  };
+  const Eigen::Vector3d P0 = sheet.viewer_from_photograph * (depth_m * first.homogeneous());
+  const Eigen::Vector3d U = in_viewer(along);
+  const Eigen::Vector3d V = in_viewer(down);
+
+  // Find the pixels that may see it.
+  const core::CameraModel& camera = sheet.viewer.camera;
+  const auto box = pixel_box({P0, P0 + U, P0 + V, P0 + U + V}, camera);
+  if (!box) return std::nullopt;
+  ScreenQuad quad{};
+  const auto within = [](double x, int most) {
+    return static_cast<int>(std::clamp(x, -1.0, static_cast<double>(most)));
+  };
+  quad.left = std::max(within(std::ceil(box->x), camera.width_px()), 0);
+  quad.top = std::max(within(std::ceil(box->y), camera.height_px()), 0);
+  quad.right = within(std::floor(box->x + box->width), camera.width_px() - 1);
+  quad.bottom = within(std::floor(box->y + box->height), camera.height_px() - 1);
+  if (quad.left > quad.right || quad.top > quad.bottom) return std::nullopt;
+
+  // Work in depths of the quad, far from the limits of single precision.
+  const Eigen::Vector3d normal = U.cross(V) / (depth_m * depth_m);
+  const double volume = P0.dot(normal);
+  if (!(std::abs(volume) > 0)) return std::nullopt;
+  quad.normal = normal.cast<float>();
+  quad.to_a = (V.cross(P0) / (depth_m * depth_m)).cast<float>();
+  quad.to_b = (P0.cross(U) / (depth_m * depth_m)).cast<float>();
+  quad.per_volume = static_cast<float>(1 / volume);
+  quad.first_x = static_cast<float>(i * level.spacing_px - 0.5 - sheet.enlargement_px);
+  quad.first_y = static_cast<float>(j * level.spacing_px - 0.5 - sheet.enlargement_px);
+  quad.side_px = static_cast<float>(side_px);
+  quad.tolerance = kToleranceSides * static_cast<float>(level.spacing_px) * sheet.pixel_angle;
+
+  // Weigh it.
+  const Eigen::Vector3d middle = depth_m * ((a + b + c + d) / 4).homogeneous();
+  const double angle2 =
+      (-middle.normalized() - (sheet.viewer_eye - middle).normalized()).squaredNorm();
+  const float certain = certainty(sheet, i, j, static_cast<float>(depth_m), quad.tolerance);
+  quad.weight = certain * static_cast<float>(1 / (angle2 + kLeastAngle * kLeastAngle));
+  quad.is_flier = certain == kFlierWeight;
+  return quad;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector2f> node_rays(const KeptView& photograph, const QuadLevel& level) {
+  constexpr float none = std::numeric_limits<float>::quiet_NaN();
+  std::vector<Eigen::Vector2f> rays;
+  rays.reserve(static_cast<std::size_t>(level.columns + 1) *
+               static_cast<std::size_t>(level.rows + 1));
+  for (int j = 0; j <= level.rows; ++j) {
+    for (int i = 0; i <= level.columns; ++i) {
+      const auto ray =
+          photograph.camera.unproject({photograph.crop.x + i * level.spacing_px - 0.5,
+                                       photograph.crop.y + j * level.spacing_px - 0.5});
+      rays.emplace_back(ray ? Eigen::Vector2f(ray->head<2>().cast<float>())
+                            : Eigen::Vector2f(none, none));
+    }
+  }
+  return rays;
+}
+
+std::size_t choose_level(const KeptView& photograph, const QuadView& quads,
+                         const QuadCamera& viewer) {
+  constexpr double widest_px = 2;
+  const double finer =
+      viewer.camera.intrinsics().focal_px.x() / photograph.camera.intrinsics().focal_px.x();
+  double scale = 0;  // pixels of the view per pixel of the photograph, where it is largest
+  for (const Eigen::Vector3d& probe : quads.probes) {
+    const double in_viewer_m = (viewer.camera_from_object * probe).z();
+    if (!(in_viewer_m > 0)) continue;
+    scale = std::max(scale, finer * (photograph.camera_from_object * probe).z() / in_viewer_m);
+  }
+  std::size_t level = 0;
+  while (level + 1 < quads.levels.size() &&
+         quads.levels[level + 1].spacing_px * scale <= widest_px) {
+    ++level;
+  }
+  return level;
+}
+
+std::vector<ScreenQuad> screen_quads(const KeptView& photograph, const QuadView& quads,
+                                     std::size_t level_idx,
+                                     const std::vector<Eigen::Vector2f>& nodes,
+                                     double enlargement_px, const QuadCamera& viewer, int threads) {
+  const QuadLevel& level = quads.levels[level_idx];
+  std::size_t first = 0;
+  for (std::size_t l = 0; l < level_idx; ++l) first += quads.levels[l].size();
+  const Eigen::Isometry3d viewer_from_photograph =
+      viewer.camera_from_object * photograph.camera_from_object.inverse();
+  const Sheet sheet{photograph,
+                    quads,
+                    level,
+                    quads.depths.codes.data() + first,
+                    nodes,
+                    enlargement_px,
+                    viewer,
+                    viewer_from_photograph,
+                    viewer_from_photograph.inverse().translation(),
+                    1.0f / static_cast<float>(photograph.camera.intrinsics().focal_px.minCoeff())};
+
+  // Rows of cells by threads, then one behind the other.
+  std::vector<std::vector<ScreenQuad>> rows(static_cast<std::size_t>(level.rows));
+  core::parallel_for(
+      rows.size(), threads,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t j = begin; j < end; ++j) {
+          for (int i = 0; i < level.columns; ++i) {
+            if (auto quad = screen_quad(sheet, i, static_cast<int>(j))) rows[j].push_back(*quad);
+          }
+        }
+      },
+      8);
+  std::vector<ScreenQuad> all;
+  for (const auto& row : rows) all.insert(all.end(), row.begin(), row.end());
+  return all;
+}
+
+}  // namespace sheen::render

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+// The disk fills up at every write of every command that writes, and the command is killed before
+// every write and every move: afterwards each output is the old one or the new one, whole. A
+// command that says it is done has written everything (docs/trust.md).
+#include "tests/app/program.h"
+
+#include <gtest/gtest.h>
+#include <stdlib.h>
+
+#include <map>
+
+namespace sheen::tests {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostEvents = 2000;
+
+/// Files of a folder (or one file) by name, "" for what is no file.
+using Tree = std::map<std::string, std::string>;
+
+Tree tree_of(const fs::path& path) {
+  Tree tree;
+  if (fs::is_regular_file(path)) tree["."] = read_file(path);
+  if (!fs::is_directory(path)) return tree;
+  for (const auto& entry : fs::recursive_directory_iterator(path)) {
+    if (entry.is_regular_file()) {
+      tree[entry.path().lexically_relative(path).string()] = read_file(entry.path());
+    }
+  }
+  return tree;
+}
+
+/// A command with its outputs below a folder, which OUT in its words stands for. SESSION stands for
+/// a small session, MODEL and STATE for what was made of it.
+struct WritingCommand {
+  const char* name;
+  std::vector<std::string> words;
+  std::vector<std::string> outputs;  ///< that must be equal, byte for byte, to those of a good run
+};
+
+const std::vector<WritingCommand>& commands() {
+  static const std::vector<WritingCommand> all{
+      {"replay",
+       {"replay", "SESSION", "-o", "OUT/model.glb", "--mean-out", "OUT/mean.glb", "--poses-out",
+        "OUT/poses.txt", "--state", "OUT/fit.state", "--report", "OUT/report.json"},
+       {"model.glb", "mean.glb", "poses.txt", "fit.state"}},
+      {"replay_detail",
+       {"replay", "SESSION", "-o", "OUT/model.glb", "--patches", "detail"},
+       {"model.glb"}},
+      {"render",
+       {"render", "MODEL", "--views", "SESSION", "-o", "OUT/views"},
+       {"views/0000.png", "views/0003.png"}},
+      {"evaluate",
+       {"evaluate", "MODEL", "SESSION", "--contact-sheet", "OUT/sheet.png", "--report",
+        "OUT/report.json"},
+       {"sheet.png"}},
+      {"export", {"export", "MODEL", "-o", "OUT/model.html"}, {"model.html"}},
+      {"merge",
+       {"merge", "STATE", "-o", "OUT/model.glb", "--state", "OUT/fit.state"},
+       {"model.glb", "fit.state"}},
+      {"forget",
+       {"forget", "STATE", "--frames", "0-1", "-o", "OUT/model.glb", "--state", "OUT/fit.state"},
+       {"model.glb", "fit.state"}},
+  };
+  return all;
+}
+
+class Faults : public ::testing::TestWithParam<std::size_t> {
+ protected:
+  static void SetUpTestSuite() {
+    made_ = new TemporaryFolder;  // NOLINT: gtest's way of sharing
+    run_good({"synth", "matte", "-o", *made_ / "session", "--size", "160x120", "--frames", "6",
+              "--held-out", "0", "--samples", "1", "--mesh-vertices", "500", "--quiet"});
+    run_good({"replay", *made_ / "session", "-o", *made_ / "model.glb", "--representation", "mean",
+              "--state", *made_ / "fit.state", "--quiet"});
+    made_->write("jobs.yaml",
+                 "sessions: [session]\nsteps: [replay, export]\n"
+                 "options: {replay: --representation mean}\n");
+  }
+  static void TearDownTestSuite() { delete made_; }
+
+  static void run_good(const std::vector<std::string>& words) {
+    const ProgramRun run = run_sheen(words);
+    ASSERT_EQ(run.exit_code, 0) << run.standard_error;
+  }
+
+  ProgramRun run(const fs::path& out, const std::string& fault) const {
+    std::vector<std::string> words;
+    for (std::string word : command_.words) {
+      if (word.starts_with("OUT/")) word = out / word.substr(4);
+      if (word == "SESSION") word = *made_ / "session";
+      if (word == "MODEL") word = *made_ / "model.glb";
+      if (word == "STATE") word = *made_ / "fit.state";
+      if (word == "JOBS") word = *made_ / "jobs.yaml";
+      words.push_back(word);
+    }
+    words.insert(words.end(), {"--quiet", "--threads", "1"});
+    if (fault.empty()) return run_sheen(words);
+    setenv("LD_PRELOAD", FAIL_WRITE_LIBRARY, 1);
+    setenv("SHEEN_FAULT", fault.c_str(), 1);
+    ProgramRun result = run_sheen(words);
+    unsetenv("LD_PRELOAD");
+    unsetenv("SHEEN_FAULT");
+    return result;
+  }
+
+  /// What stood there before: nothing for a batch, which goes on with what it finds.
+  fs::path make_old(const fs::path& out) const {
+    fs::remove_all(out);
+    fs::create_directories(out);
+    for (const std::string& output : command_.outputs) {
+      if (output.starts_with("batch/")) continue;
+      if (fs::path(output).has_extension()) {
+        fs::create_directories((out / output).parent_path());
+        write_file(out / output, "old");
+      } else {
+        fs::create_directories(out / output);
+        write_file(out / output / "old.txt", "old");
+      }
+    }
+    return out;
+  }
+
+  void expect_old_or_new(const fs::path& out, const fs::path& old, const fs::path& good,
+                         bool is_done) const {
+    for (const std::string& output : command_.outputs) {
+      const Tree found = tree_of(out / output);
+      const bool is_new = found == tree_of(good / output);
+      // A folder is replaced by two moves, between which there is none; it stands aside then.
+      EXPECT_TRUE(is_new || (!is_done && (found == tree_of(old / output) || found.empty())))
+          << output << " is neither the old nor the new one";
+      if (fs::path(output).has_extension() && !output.starts_with("batch/")) {
+        EXPECT_FALSE(found.empty()) << output << " is gone";
+      }
+    }
+  }
+
+  const WritingCommand& command_ = commands().at(GetParam());
+  TemporaryFolder folder_;
+  static TemporaryFolder* made_;
+};
+
+TemporaryFolder* Faults::made_ = nullptr;
+
+TEST_P(Faults, OutputsAreOldOrNewWhereverTheDiskIsFull) {
+  const auto good = make_old(folder_ / "good");
+  const auto old = make_old(folder_ / "old");
+  ASSERT_EQ(run(good, "").exit_code, 0) << run(good, "").standard_error;
+  for (const char* kind : {"full", "short"}) {
+    int n = 1;
+    for (; n < kMostEvents; ++n) {
+      SCOPED_TRACE(std::string(command_.name) + " " + kind + ":" + std::to_string(n));
+      const auto out = make_old(folder_ / "out");
+      const ProgramRun faulty = run(out, std::string(kind) + ":" + std::to_string(n));
+      const bool is_done = faulty.exit_code == 0;
+      expect_old_or_new(out, old, good, is_done);
+      if (is_done) break;
+      EXPECT_TRUE(faulty.exit_code == 1 || faulty.exit_code == 2) << faulty.exit_code;
+      EXPECT_EQ(std::count(faulty.standard_error.begin(), faulty.standard_error.end(), '\n'), 1)
+          << faulty.standard_error;
+      for (const auto& entry : fs::recursive_directory_iterator(out)) {
+        EXPECT_EQ(entry.path().filename().string().find(".partial-"), std::string::npos)
+            << entry.path();
+      }
+      if (HasFailure()) return;
+    }
+    EXPECT_LT(n, kMostEvents);
+    std::printf("  %s: %s disk at each of %d writes\n", command_.name, kind, n - 1);
+  }
+}
+
+TEST_P(Faults, OutputsAreOldOrNewWheneverItIsKilled) {
+  const auto good = make_old(folder_ / "good");
+  const auto old = make_old(folder_ / "old");
+  ASSERT_EQ(run(good, "").exit_code, 0);
+  int n = 1;
+  for (; n < kMostEvents; ++n) {
+    SCOPED_TRACE(std::string(command_.name) + " kill:" + std::to_string(n));
+    const auto out = make_old(folder_ / "out");
+    const ProgramRun killed = run(out, "kill:" + std::to_string(n));
+    expect_old_or_new(out, old, good, killed.exit_code == 0);
+    if (killed.exit_code == 0) break;
+    // The same command then does it all the same.
+    EXPECT_EQ(run(out, "").exit_code, 0);
+    expect_old_or_new(out, old, good, true);
+    if (HasFailure()) return;
+  }
+  std::printf("  %s: killed at each of %d writes and moves\n", command_.name, n - 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryCommand, Faults, ::testing::Range(std::size_t{0}, commands().size()),
+                         [](const auto& each) { return std::string(commands()[each.param].name); });
+
+}  // namespace
+}  // namespace sheen::tests
