@@ -8,8 +8,10 @@
 #include "fitting/spherical_harmonics/basis.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace sheen::exporters {
@@ -23,6 +25,7 @@ using Row = Eigen::Matrix<double, kTerms, 1>;
 constexpr float kSigmaPerEdge = 0.55f;
 constexpr float kOpacity = 0.95f;
 constexpr float kThickness = 0.05f;  // of a disc, of its width
+constexpr float kNarrowest = 0.2f;   // its shorter axis, of the longer one
 
 // Directions over the hemisphere, even on the disc as pixels see them: side of their square.
 constexpr int kSide = 8;
@@ -85,13 +88,28 @@ std::array<Eigen::Vector3f, kTerms> fit_harmonics(const fitting::PatchLightField
   return harmonics;
 }
 
-/// Mean length of the edges at a vertex; 0 where it has none.
-float edge_at(const core::Mesh& mesh, const core::VertexNeighbours& neighbours, std::size_t i) {
-  const auto others = neighbours.of(i);
-  float sum = 0;
-  for (const std::uint32_t other : others)
-    sum += (mesh.positions[other] - mesh.positions[i]).norm();
-  return others.empty() ? 0.0f : sum / static_cast<float>(others.size());
+/// How far neighbours lie along two axes of the tangent plane, right-handed with the normal: of a
+/// grid of equal edges their length, either way. Nothing where there are none.
+struct Spread {
+  Eigen::Vector3f first, second;  ///< unit
+  Eigen::Vector2f edge;           ///< metres, > 0
+};
+std::optional<Spread> spread_at(const core::Mesh& mesh, const core::VertexNeighbours& neighbours,
+                                const core::TangentFrame& frame, std::size_t i) {
+  Eigen::Matrix2f squares = Eigen::Matrix2f::Zero();
+  for (const std::uint32_t other : neighbours.of(i)) {
+    const Eigen::Vector3f edge = mesh.positions[other] - mesh.positions[i];
+    const Eigen::Vector2f level(edge.dot(frame.tangent), edge.dot(frame.bitangent));
+    squares += level * level.transpose() / static_cast<float>(neighbours.of(i).size());
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2f> axes;
+  axes.computeDirect(squares);
+  // Of directions spread evenly, half of the squared length lies along each axis.
+  const Eigen::Vector2f edge = (2.0f * axes.eigenvalues().cwiseMax(0.0f)).cwiseSqrt();
+  if (!(edge[1] > 0)) return std::nullopt;
+  const Eigen::Vector2f v = axes.eigenvectors().col(0);
+  const Eigen::Vector3f first = v.x() * frame.tangent + v.y() * frame.bitangent;
+  return Spread{first, frame.normal.cross(first), edge.cwiseMax(kNarrowest * edge[1])};
 }
 
 /// Harmonics per vertex, over the mesh that they were made from.
@@ -160,15 +178,16 @@ Splats make_splats(const fitting::Model& model, const Eigen::Matrix3f& axes) {
   Splats splats;
   splats.offset = axes.cast<double>() * mesh.offset;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    const float sigma = kSigmaPerEdge * edge_at(mesh, neighbours, i);
-    if (!(sigma > 0)) continue;
     const core::TangentFrame frame = core::tangent_frame(mesh.normals[i]);
+    const auto spread = spread_at(mesh, neighbours, frame, i);
+    if (!spread) continue;
     Eigen::Matrix3f turn;
-    turn << frame.tangent, frame.bitangent, frame.normal;
+    turn << spread->first, spread->second, frame.normal;
     Splat splat;
     splat.position = axes * mesh.positions[i];
     splat.rotation = Eigen::Quaternionf(Eigen::Matrix3f(axes * turn)).normalized();
-    splat.sigma = {sigma, sigma, kThickness * sigma};
+    const Eigen::Vector2f sigma = kSigmaPerEdge * spread->edge;
+    splat.sigma = {sigma[0], sigma[1], kThickness * sigma.mean()};
     splat.opacity = kOpacity;
     splat.harmonics = fit_harmonics(patches, i, frame, axes, places);
     splats.splats.push_back(splat);

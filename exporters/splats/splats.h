@@ -33,11 +33,11 @@ struct Splats {
   Eigen::Vector3d offset{0, 0, 0};    ///< core::Mesh::offset, in the axes of the splats
 };
 
-/// A flat disc for every vertex that a triangle uses, as wide as its edges are long, with harmonics
-/// of degree 0 to 3 that are nearest to the model's radiance over the hemisphere it can be seen
-/// from; towards the other, harmonics are held near the mean, since they would swing there. Axes
-/// are those of `axes_from_object`, a rotation. Throws core::Error (bad_input) for models without
-/// patches.
+/// A flat disc for every vertex that a triangle uses, as wide as its edges are long to either side,
+/// with harmonics of degree 0 to 3 that are nearest to the model's radiance over the hemisphere it
+/// can be seen from; towards the other, harmonics are held near the mean, since they would swing
+/// there. Axes are those of `axes_from_object`, a rotation. Throws core::Error (bad_input) for
+/// models without patches.
 Splats make_splats(const fitting::Model& model, const Eigen::Matrix3f& axes_from_object);
 
 /// What a reader of the splats sees, drawn on the mesh: harmonics in place of the patches. What
