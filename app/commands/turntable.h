@@ -25,8 +25,8 @@ cv::Size picture_size(const std::string& text);
 /// none, dark, light or #rrggbb; throws UsageError for others.
 std::optional<cv::Scalar> background_colour(const std::string& text);
 
-/// Draws one turn of the object: NNNN.png in the folder `output`, or the video `output` when it ends
-/// in .mp4. Outlines are smooth.
+/// Draws one turn of the object: NNNN.png in the folder `output`, or the video `output` when it
+/// ends in .mp4. Outlines are smooth.
 void render_turntable(const std::filesystem::path& model, const std::filesystem::path& output,
                       const TurntableOptions& options, const CommandContext& context);
 

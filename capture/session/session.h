@@ -27,7 +27,7 @@ struct Session {
   std::optional<std::filesystem::path> camera_file;  ///< camera.yaml, where it was read from a file
   std::optional<std::filesystem::path> board;        ///< board.yaml
   std::optional<std::filesystem::path> poses;        ///< poses.txt; wins over the board
-  std::filesystem::path mesh;  ///< empty: it has none yet
+  std::filesystem::path mesh;                        ///< empty: it has none yet
   /// Places the mesh, less `mesh_offset`, on the board; as read, the mesh as its file has it.
   Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();
   Eigen::Vector3d mesh_offset = Eigen::Vector3d::Zero();
