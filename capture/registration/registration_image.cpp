@@ -92,10 +92,15 @@ cv::Mat draw_registration(const core::Mesh& mesh, const core::CameraModel& camer
   const int rows = (count + columns - 1) / columns;
   cv::Mat sheet(kLegendHeight + rows * (kCellHeight + kGap) + kGap,
                 columns * (kCellWidth + kGap) + kGap, CV_8UC3, kPaper);
-  cv::putText(sheet, "orange: before", {kGap + 4, 22}, cv::FONT_HERSHEY_SIMPLEX, 0.5, kBefore, 1,
-              cv::LINE_AA);
-  cv::putText(sheet, "blue: after", {kGap + 150, 22}, cv::FONT_HERSHEY_SIMPLEX, 0.5, kAfter, 1,
-              cv::LINE_AA);
+  const auto write = [&](const char* text, int left, const cv::Scalar& colour) {
+    cv::putText(sheet, text, {left, 22}, cv::FONT_HERSHEY_SIMPLEX, 0.5, colour, 1, cv::LINE_AA);
+  };
+  if (before.isApprox(after)) {
+    write("blue: the mesh's outline", kGap + 4, kAfter);
+  } else {
+    write("orange: before", kGap + 4, kBefore);
+    write("blue: after", kGap + 150, kAfter);
+  }
   for (int i = 0; i < count; ++i) {
     const cv::Rect place(kGap + (i % columns) * (kCellWidth + kGap),
                          kLegendHeight + (i / columns) * (kCellHeight + kGap), kCellWidth,

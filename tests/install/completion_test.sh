@@ -12,7 +12,7 @@ offers() {
   [[ ${COMPREPLY[*]} == "$expected" ]] || { echo "$*: offered ${COMPREPLY[*]}, not $expected"; exit 1; }
 }
 
-offers "register replay render" sheen re
+offers "register replay resume render" sheen re
 offers "vertex texel detail" sheen replay --patches ""
 offers "mjpeg" sheen capture --format m
 offers "--contact-sheet" sheen evaluate model.glb --co
