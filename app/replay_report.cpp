@@ -123,6 +123,17 @@ std::string timing_text(const core::StageTimer& timer) {
                             timer.frame_cpu().median, timer.frame_wall().median);
 }
 
+/// Of patches, or of photographs.
+std::string model_text(const ReplayReport& report) {
+  const double megabytes = static_cast<double>(report.model_bytes) / 1e6;
+  if (report.patches == 0) {
+    return fmt::format("model    {}: {:.2f} MB\n", report.representation, megabytes);
+  }
+  return fmt::format("model    {}: {} patches ({} seen), {:.0f} numbers each, {:.2f} MB\n",
+                     report.representation, report.patches, report.patches_observed,
+                     per_patch(report), megabytes);
+}
+
 }  // namespace
 
 nlohmann::ordered_json to_json(const ReplayReport& report) {
@@ -185,9 +196,7 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
 std::string to_text(const ReplayReport& report) {
   std::string text = frames_text(report.frames);
   if (report.mesh) text += mesh_text(*report.mesh);
-  text += fmt::format("model    {}: {} patches ({} seen), {:.0f} numbers each, {:.2f} MB\n",
-                      report.representation, report.patches, report.patches_observed,
-                      per_patch(report), static_cast<double>(report.model_bytes) / 1e6);
+  text += model_text(report);
   text += fmt::format(
       "fit      {} samples, {:.1f} least-squares fits per patch per view, {:.0f} ms at the end\n",
       report.fit.samples, fits_per_patch_per_view(report.fit), report.finish_ms);
