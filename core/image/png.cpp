@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "core/image/png.h"
 
+#include "core/image/decode_colour.h"
+
 #include <opencv2/imgcodecs.hpp>
 
 #include <algorithm>
@@ -50,19 +52,8 @@ std::optional<cv::Size> png_size(std::span<const std::byte> bytes) {
 }
 
 std::optional<cv::Mat> decode_png(std::span<const std::byte> bytes, const cv::Size& size) {
-  if (png_size(bytes) != size || bytes.size() > std::numeric_limits<int>::max()) {
-    return std::nullopt;
-  }
-  // The decoder wants bytes that it could change, and leaves them alone.
-  const cv::Mat file(1, static_cast<int>(bytes.size()), CV_8UC1,
-                     const_cast<std::byte*>(bytes.data()));
-  try {
-    cv::Mat image = cv::imdecode(file, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
-    if (image.size() != size || image.type() != CV_8UC3) return std::nullopt;
-    return image;
-  } catch (const cv::Exception&) {
-    return std::nullopt;
-  }
+  if (png_size(bytes) != size) return std::nullopt;
+  return decode_colour(bytes, size);
 }
 
 }  // namespace sheen::core

@@ -2,6 +2,7 @@
 #include "fitting/detail/texel_means.h"
 
 #include "core/concurrency/parallel_for.h"
+#include "core/image/bilinear.h"
 
 #include <algorithm>
 #include <atomic>
@@ -11,24 +12,6 @@ namespace sheen::fitting::detail {
 namespace {
 
 using Rgb = std::array<float, 3>;
-
-/// Bilinear, 0 to 255, RGB; the four pixels exist.
-Rgb read(const cv::Mat& image, const Eigen::Vector2f& at_px) {
-  const auto x = static_cast<int>(at_px.x());
-  const auto y = static_cast<int>(at_px.y());
-  const float right = at_px.x() - static_cast<float>(x);
-  const float below = at_px.y() - static_cast<float>(y);
-  const std::uint8_t* const upper = image.ptr<std::uint8_t>(y) + 3 * x;
-  const std::uint8_t* const lower = upper + image.step[0];
-  const auto channel = [&](int c) {
-    const float above =
-        (1 - right) * static_cast<float>(upper[c]) + right * static_cast<float>(upper[c + 3]);
-    const float under =
-        (1 - right) * static_cast<float>(lower[c]) + right * static_cast<float>(lower[c + 3]);
-    return (1 - below) * above + below * under;
-  };
-  return {channel(2), channel(1), channel(0)};
-}
 
 void add(const Rgb& rgb, const std::array<float, 3>& weight, CornerColours& corners) {
   for (std::size_t corner = 0; corner < 3; ++corner) {
@@ -85,7 +68,7 @@ void TexelMeans::integrate_triangle(std::uint32_t triangle_idx,
       gaps = gaps || means_[texel.texel_idx].weight == 0;
       continue;
     }
-    Rgb rgb = read(observation.image, *at_px);
+    Rgb rgb = core::bilinear_rgb(observation.image, *at_px);
     for (float& channel : rgb) channel = std::min(255.0f, channel * without_gain);
     WeightedMean& mean = means_[texel.texel_idx];
     const float cosine = triangle->cosine(weight);

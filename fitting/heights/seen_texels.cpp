@@ -58,21 +58,4 @@ bool SeenTexels::is_at_outline(std::size_t vertex_idx) const {
          raster_.is_at_outline(vertices_.x_px[vertex_idx], vertices_.y_px[vertex_idx]);
 }
 
-std::array<float, 3> SeenTexels::read(const cv::Mat& image, const Eigen::Vector2f& at_px) {
-  const auto x = static_cast<int>(at_px.x());
-  const auto y = static_cast<int>(at_px.y());
-  const float right = at_px.x() - static_cast<float>(x);
-  const float below = at_px.y() - static_cast<float>(y);
-  const std::uint8_t* const upper = image.ptr<std::uint8_t>(y) + 3 * x;
-  const std::uint8_t* const lower = upper + image.step[0];
-  const auto channel = [&](int c) {
-    const float above =
-        (1 - right) * static_cast<float>(upper[c]) + right * static_cast<float>(upper[c + 3]);
-    const float under =
-        (1 - right) * static_cast<float>(lower[c]) + right * static_cast<float>(lower[c + 3]);
-    return (1 - below) * above + below * under;
-  };
-  return {channel(2), channel(1), channel(0)};
-}
-
 }  // namespace sheen::fitting::heights

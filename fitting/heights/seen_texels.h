@@ -3,6 +3,7 @@
 
 #include "core/concurrency/parallel_for.h"
 #include "core/geometry/camera.h"
+#include "core/image/bilinear.h"
 #include "core/mesh/mesh.h"
 #include "core/samples/surface_points.h"
 #include "core/samples/vertex_view.h"
@@ -71,8 +72,6 @@ class SeenTexels {
  private:
   template <typename Visit>
   void visit_triangle(std::size_t triangle_idx, const Visit& visit) const;
-  [[nodiscard]] static std::array<float, 3> read(const cv::Mat& image,
-                                                 const Eigen::Vector2f& at_px);
 
   const core::Mesh& mesh_;
   const detail::SurfaceTexels& surface_;
@@ -103,8 +102,9 @@ void SeenTexels::visit_triangle(std::size_t triangle_idx, const Visit& visit) co
     const float height = towards_eye.dot(plane.normal);
     if (!(height >= least_cosine * towards_eye.norm())) continue;
     const float cosine = triangle->cosine(weight);
-    visit(triangle_idx, SeenTexel{texel.texel_idx, weight, cosine * cosine, read(image_, *at_px),
-                                  plane.atlas_from_object * towards_eye / height});
+    visit(triangle_idx,
+          SeenTexel{texel.texel_idx, weight, cosine * cosine, core::bilinear_rgb(image_, *at_px),
+                    plane.atlas_from_object * towards_eye / height});
   }
 }
 
