@@ -58,8 +58,8 @@ TEST(SparseLive, HighlightIsFollowedBeforeTheEnd) {
 
 TEST(SparseLive, WorkOfAViewIsBounded) {
   // 4800 patches, all of them badly predicted for every view. A patch of four samples or more costs
-  // at least 20 of the view's 19200 units of work, so 960 may take a step, which solves at most five
-  // systems: the patch as it is, with a linear base, with a RBF more, with one less, and the
+  // at least 20 of the view's 19200 units of work, so 960 may take a step, which solves at most
+  // five systems: the patch as it is, with a linear base, with a RBF more, with one less, and the
   // outcome.
   constexpr std::uint32_t patches = 4800;
   const auto fitter = make_live(patches);
