@@ -2,6 +2,7 @@
 #include "app/commands/mesh.h"
 
 #include "app/commands/frame_options.h"
+#include "app/session_lock.h"
 #include "app/terminal_sink.h"
 #include "capture/registration/registration_image.h"
 #include "capture/session/keep_before.h"
@@ -145,6 +146,7 @@ void run_mesh(const MeshOptions& options, const CommandContext& context) {
   capture::Session session = capture::open_session(options.session);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
   check_nothing_is_replaced(options, session);
+  const SessionLock lock(options.session, {output_of(options)});
   if (!session.board) {
     throw core::bad_input(options.session, "names no board, so there is no sheet to learn",
                           "film the object on a printed board (sheen board)");
