@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kTrustInGain = 1;
 constexpr float kPriorPerPixel = 0.25F;  // log odds per pixel of distance from the earlier outline
-constexpr float kPriorInside = 2;        // most other views agree there is something on this ray
+constexpr float kPriorInside = 1.0F;     // most other views agree there is something on this ray
 constexpr float kPriorGuessed =
     0.5F;                            // where the stage is guessed: what disproves counts less, too
 constexpr float kPriorOutside = -1;  // weaker: what was lost by mistake may come back
