@@ -57,12 +57,13 @@ fitting::mean::MeanLightField lit(const core::Mesh& mesh) {
   return light_field;
 }
 
-core::CameraModel pinhole(double focal_px, int side_px) {
-  core::CameraModel::Intrinsics in;
-  in.width_px = in.height_px = side_px;
-  in.focal_px.setConstant(focal_px);
-  in.principal_px.setConstant((side_px - 1) / 2.0);
-  return core::CameraModel(in);
+/// Where the object's centre lies within a pixel; the same series for every object, evenly spread
+/// (the fractions of multiples of the plastic number's powers). From afar an object is a few
+/// pixels, whose errors depend on it.
+Eigen::Vector2d shift_px(std::size_t number) {
+  const Eigen::Array2d multiples =
+      static_cast<double>(number) * Eigen::Array2d(0.7548776662466927, 0.5698402909980532);
+  return (multiples - multiples.floor() - 0.5).matrix();
 }
 
 Eigen::Isometry3d looking_at(const Eigen::Vector3f& centre, const Eigen::Vector3f& from,
@@ -81,20 +82,21 @@ struct Viewer {
   Eigen::Isometry3d camera_from_object;
   double focal_px;
   int side_px;
+  Eigen::Vector2d shift_px;  ///< of the object's centre from the image's middle
 };
 
 Viewer viewer_at(const billboard::Sphere& sphere, const Eigen::Vector3f& from, double field_deg,
-                 double relative_distance, int side_px) {
+                 double relative_distance, int side_px, const Eigen::Vector2d& shift_px) {
   const double half_angle = radians(field_deg / 2);
   const auto radius_m = static_cast<double>(sphere.radius_m);
   const double distance_m = relative_distance * radius_m / std::sin(half_angle);
   const double focal_px = side_px / 2.0 / std::tan(half_angle);
-  Viewer viewer{looking_at(sphere.centre, from, distance_m), focal_px, side_px};
+  Viewer viewer{looking_at(sphere.centre, from, distance_m), focal_px, side_px, shift_px};
   // The sphere's outline, and the circle that a frame of 90 degrees shows on the plane through the
   // centre, sqrt(2) radii around it.
   const double beyond_m2 = distance_m * distance_m - radius_m * radius_m;
   if (beyond_m2 > 0) {
-    const double half_px = focal_px * std::sqrt(2 / beyond_m2) * radius_m + 2;
+    const double half_px = focal_px * std::sqrt(2 / beyond_m2) * radius_m + 3;
     // As odd or even as the image, so that pixels stay where they are.
     const int cut = std::max(0, static_cast<int>(side_px / 2.0 - half_px));
     viewer.side_px = side_px - 2 * cut;
@@ -140,8 +142,8 @@ class Study {
   }
 
   [[nodiscard]] Viewer viewer(const Eigen::Vector3f& from, double field_deg,
-                              double relative_distance) const {
-    return viewer_at(sphere_, from, field_deg, relative_distance, images_.side_px);
+                              double relative_distance, const Eigen::Vector2d& shift) const {
+    return viewer_at(sphere_, from, field_deg, relative_distance, images_.side_px, shift);
   }
 
   cv::Mat draw_mesh(const Viewer& viewer) {
@@ -162,7 +164,11 @@ class Study {
 
  private:
   [[nodiscard]] core::CameraModel camera_of(const Viewer& viewer) const {
-    return pinhole(viewer.focal_px * images_.samples, viewer.side_px * images_.samples);
+    core::CameraModel::Intrinsics in;
+    in.width_px = in.height_px = viewer.side_px * images_.samples;
+    in.focal_px.setConstant(viewer.focal_px * images_.samples);
+    in.principal_px = (viewer.shift_px.array() + viewer.side_px / 2.0) * images_.samples - 0.5;
+    return core::CameraModel(in);
   }
 
   /// The points of every pixel become one; CV_8UC3, as an image is stored.
@@ -206,14 +212,19 @@ std::vector<BillboardErrors> billboard_errors(const core::Mesh& mesh, const Bill
     }
     for (std::size_t f = 0; f < view_fields_deg.size(); ++f) {
       for (std::size_t d = 0; d < kDistances.size(); ++d) {
-        const Viewer viewer = study.viewer(viewers[v], view_fields_deg[f], kDistances[d]);
-        const cv::Mat exact = study.draw_mesh(viewer);
-        for (std::size_t b = 0; b < frames.size(); ++b) {
-          const auto [total, box_px] = difference(study.draw_frame(frames[b], viewer), exact);
-          const auto count = static_cast<double>(viewers.size());
-          BillboardErrors& errors = all[f * frames.size() + b];
-          errors.total[d] += total / count;
-          errors.average[d] += total / std::max(box_px, 1) / count;
+        // Small images cost little.
+        const std::size_t repeats = kDistances[d] < 4 ? 1 : 4;
+        const double count = static_cast<double>(viewers.size() * repeats);
+        for (std::size_t r = 0; r < repeats; ++r) {
+          const Viewer viewer = study.viewer(viewers[v], view_fields_deg[f], kDistances[d],
+                                             shift_px(repeats * v + r));
+          const cv::Mat exact = study.draw_mesh(viewer);
+          for (std::size_t b = 0; b < frames.size(); ++b) {
+            const auto [total, box_px] = difference(study.draw_frame(frames[b], viewer), exact);
+            BillboardErrors& errors = all[f * frames.size() + b];
+            errors.total[d] += total / count;
+            errors.average[d] += total / std::max(box_px, 1) / count;
+          }
         }
       }
     }

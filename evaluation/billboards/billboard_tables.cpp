@@ -119,13 +119,13 @@ std::vector<std::string> rule_of_order(const BillboardStudy& study) {
 }
 
 std::vector<std::string> rule_of_totals(const BillboardStudy& study) {
-  const auto holds = [](const BillboardErrors& errors) {
-    return std::is_sorted(errors.total.begin() + 1, errors.total.end(), std::greater());
-  };
-  const auto count = std::ranges::count_if(study.hard, holds);
-  return rule("totals fall at every doubling from distance 1",
-              fmt::format("{} of {} columns", count, study.hard.size()),
-              static_cast<std::size_t>(count) == study.hard.size());
+  int count = 0;
+  for (std::size_t view = 0; view < kViewFields_deg.size(); ++view) {
+    count +=
+        std::ranges::is_sorted(of_view(study.hard, view)[0].total, std::ranges::greater()) ? 1 : 0;
+  }
+  return rule("orthographic: totals fall at every doubling", fmt::format("{} of 3 views", count),
+              count == 3);
 }
 
 /// The error at the distance from which a frame was baked, beside the paper's.
@@ -187,23 +187,25 @@ std::vector<Table> average_tables(const BillboardStudy& study) {
 
 Table all_figures(const BillboardStudy& study) {
   Table table{"Billboards",
-              {"view_fov", "bake_fov", "outlines", "distance", "total", "average", "paper_total",
-               "paper_average"},
+              {"pixels", "view_fov", "bake_fov", "outlines", "distance", "total", "average",
+               "paper_total", "paper_average"},
               {}};
-  for (const auto& [name, all] :
-       {std::pair{"hard", &study.hard}, std::pair{"antialiased", &study.antialiased}}) {
-    for (std::size_t i = 0; i < all->size(); ++i) {
-      const BillboardErrors& errors = (*all)[i];
-      for (std::size_t d = 0; d < kDistances.size(); ++d) {
-        table.rows.push_back({fmt::format("{:g}", errors.view_field_deg),
-                              fmt::format("{:g}", errors.bake_field_deg), name,
-                              fmt::format("{:g}", kDistances[d]), decimals(errors.total[d], 0),
-                              decimals(errors.average[d], 2),
-                              fmt::format("{:g}", kPaperTotals[i / kBakes][d][i % kBakes]),
-                              fmt::format("{:g}", kPaperAverages[i / kBakes][d][i % kBakes])});
-      }
+  const auto add = [&](const BillboardErrors& errors, int side_px, const char* outlines) {
+    const auto view = static_cast<std::size_t>(
+        std::ranges::find(kViewFields_deg, errors.view_field_deg) - kViewFields_deg.begin());
+    const std::size_t bake = bake_at(errors.bake_field_deg);
+    for (std::size_t d = 0; d < kDistances.size(); ++d) {
+      table.rows.push_back({std::to_string(side_px), fmt::format("{:g}", errors.view_field_deg),
+                            fmt::format("{:g}", errors.bake_field_deg), outlines,
+                            fmt::format("{:g}", kDistances[d]), decimals(errors.total[d], 0),
+                            decimals(errors.average[d], 2),
+                            fmt::format("{:g}", kPaperTotals[view][d][bake]),
+                            fmt::format("{:g}", kPaperAverages[view][d][bake])});
     }
-  }
+  };
+  for (const auto& errors : study.hard) add(errors, study.side_px, "hard");
+  for (const auto& errors : study.antialiased) add(errors, study.side_px, "antialiased");
+  for (const auto& errors : study.hard_twice) add(errors, 2 * study.side_px, "hard");
   return table;
 }
 

@@ -22,7 +22,7 @@ BillboardStudy run_billboard_study(const core::Mesh& mesh, int side_px, int thre
 
 /// One for each field of view of the viewer: averages, hard and antialiased, beside the paper's.
 std::vector<Table> average_tables(const BillboardStudy& study);
-/// Everything, one line for each view, bake, kind of outline and distance.
+/// Everything, one line for each size, view, bake, kind of outline and distance.
 Table all_figures(const BillboardStudy& study);
 /// The law's terms for orthographic frames, hard outlines, and where it is least.
 Table law_table(const BillboardStudy& study);

@@ -30,6 +30,7 @@ def curve(rows, view, bake, outlines, value):
 def main():
     with open(sys.argv[1], newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
+    rows = [row for row in rows if row["pixels"] == rows[0]["pixels"]]
     plt.rcParams.update({"font.size": 10, "text.color": INK, "axes.labelcolor": SOFT,
                          "axes.edgecolor": RULE, "xtick.color": SOFT, "ytick.color": SOFT,
                          "axes.spines.top": False, "axes.spines.right": False,

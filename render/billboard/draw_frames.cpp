@@ -17,11 +17,14 @@ using fitting::billboard::towards_m;
 
 /// Fewer rows of an image are not worth a thread.
 constexpr std::size_t kRowsPerThread = 16;
-/// Steps from the plane to the surface. The directions of frame and ray are near each other, so
-/// each step leaves a small part of what was wrong before.
-constexpr int kSteps = 5;
-/// A frame whose last step was as long as this part of the radius counts half: it shows another
-/// surface.
+/// Depths at which a ray is compared with the surface, from the front of the sphere to its back.
+/// The directions of frame and ray are near each other, so it moves by few pixels from one to the
+/// next.
+constexpr int kLayers = 16;
+/// Steps from a layer to the surface before it; each leaves a small part of what was wrong.
+constexpr int kSteps = 3;
+/// A ray whose last step was as long as this part of the radius counts half: it passes behind what
+/// the frame shows.
 constexpr float kMissed = 0.02f;
 /// Nearer angles count alike, radians.
 constexpr float kLeastAngle = 1e-3f;
@@ -61,22 +64,51 @@ Meeting meet(const ViewedFrame& frame, const Eigen::Vector3f& ray, float z) {
   return {frame.placed.camera.pixel(frame.eye + along * ray), frame.placed.share};
 }
 
-/// Where it meets what the frame's depths describe.
-Meeting meet_surface(const ViewedFrame& frame, const Eigen::Vector3f& ray) {
-  const float radius_m = frame.placed.camera.radius_m;
+/// The ray between two depths, the nearer one above the surface, the other one not.
+Meeting meet_between(const ViewedFrame& frame, const Eigen::Vector3f& ray, float nearer,
+                     float farther) {
+  const FrameCamera& camera = frame.placed.camera;
   Meeting meeting;
-  float z = 0;
+  float z = farther;
   float step = 0;
   for (int i = 0; i < kSteps; ++i) {
     meeting = meet(frame, ray, z);
-    if (meeting.share == 0.0f) return {};
-    const float there = towards_m(frame.placed.image->depth_code(meeting.place_px), radius_m);
+    const float there =
+        towards_m(frame.placed.image->depth_code(meeting.place_px), camera.radius_m);
     step = there - z;
-    z = there;
+    z = std::clamp(there, farther, nearer);
   }
-  const float missed = step / (kMissed * radius_m);
+  const float missed = step / (kMissed * camera.radius_m);
   meeting.share /= 1.0f + missed * missed;
   return meeting;
+}
+
+/// Where it meets what the frame's depths describe first; where it only passes behind that, with a
+/// small share.
+Meeting meet_surface(const ViewedFrame& frame, const Eigen::Vector3f& ray) {
+  const float radius_m = frame.placed.camera.radius_m;
+  // Beside the object the frame shows nothing, and that counts.
+  Meeting best{Eigen::Vector2f::Constant(-std::numeric_limits<float>::infinity()), 0.0f};
+  float nearer = radius_m;
+  bool above = true;
+  bool beside = true;
+  for (int i = 1; i <= kLayers; ++i) {
+    const float z = radius_m * (1.0f - 2.0f * static_cast<float>(i) / kLayers);
+    const Meeting meeting = meet(frame, ray, z);
+    if (meeting.share == 0.0f) return {};
+    const auto code = frame.placed.image->surface_code(meeting.place_px);
+    const bool below = code && towards_m(static_cast<float>(*code), radius_m) >= z;
+    if (below && above) {
+      const Meeting crossing = meet_between(frame, ray, nearer, z);
+      if (crossing.share > best.share) best = crossing;
+      if (2.0f * crossing.share >= frame.placed.share) return crossing;
+      beside = false;
+    }
+    above = !below;
+    nearer = z;
+  }
+  if (beside) best.share = frame.placed.share;
+  return best;
 }
 
 }  // namespace

@@ -26,6 +26,7 @@ cv::Point within(const cv::Mat& crop, float x, float y) {
 FramePyramid::FramePyramid(const fitting::billboard::FrameImage& image, int side_px)
     : side_px_(static_cast<float>(side_px)),
       crop_px_(static_cast<float>(image.crop.x), static_cast<float>(image.crop.y)) {
+  cv::extractChannel(image.shape, covered_, 0);
   cv::extractChannel(image.shape, depth_code_, 1);
   cv::extractChannel(image.shape, supported_, 2);
   cv::Mat whole(side_px, side_px, CV_32FC4, cv::Scalar::all(0));
@@ -95,13 +96,25 @@ float FramePyramid::depth_code(const Eigen::Vector2f& place_px) const {
          v * ((1 - u) * at(first.x, last.y) + u * at(last.x, last.y));
 }
 
+std::optional<std::uint8_t> FramePyramid::surface_code(const Eigen::Vector2f& place_px) const {
+  const float x = place_px.x() - crop_px_.x + 0.5f;
+  const float y = place_px.y() - crop_px_.y + 0.5f;
+  if (!(x >= 0.0f && y >= 0.0f && x < static_cast<float>(covered_.cols) &&
+        y < static_cast<float>(covered_.rows))) {
+    return std::nullopt;
+  }
+  const cv::Point pixel(static_cast<int>(x), static_cast<int>(y));
+  if (covered_.at<std::uint8_t>(pixel) == 0) return std::nullopt;
+  return depth_code_.at<std::uint8_t>(pixel);
+}
+
 bool FramePyramid::is_supported(const Eigen::Vector2f& place_px) const {
   return supported_.at<std::uint8_t>(within(supported_, place_px.x() - crop_px_.x + 0.5f,
                                             place_px.y() - crop_px_.y + 0.5f)) != 0;
 }
 
 std::size_t FramePyramid::byte_size() const {
-  std::size_t bytes = depth_code_.total() + supported_.total();
+  std::size_t bytes = covered_.total() + depth_code_.total() + supported_.total();
   for (const cv::Mat& level : levels_) bytes += level.total() * level.elemSize();
   return bytes;
 }

@@ -7,6 +7,8 @@
 #include <opencv2/core/mat.hpp>
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace sheen::render {
@@ -23,6 +25,8 @@ class FramePyramid {
 
   /// Depth code at a place, between pixels; beyond what the object covers the nearest one.
   [[nodiscard]] float depth_code(const Eigen::Vector2f& place_px) const;
+  /// The same of the nearest pixel; nothing beside the object.
+  [[nodiscard]] std::optional<std::uint8_t> surface_code(const Eigen::Vector2f& place_px) const;
   /// Whether something seen in the fit contributes there.
   [[nodiscard]] bool is_supported(const Eigen::Vector2f& place_px) const;
 
@@ -36,6 +40,7 @@ class FramePyramid {
   std::vector<cv::Mat> levels_;  ///< CV_32FC4
   cv::Point2f crop_px_;          ///< where the shape lies in the frame
   cv::Mat depth_code_;           ///< CV_8UC1 of the crop
+  cv::Mat covered_;              ///< CV_8UC1 of the crop, 0 beside the object
   cv::Mat supported_;            ///< CV_8UC1 of the crop
 };
 
