@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "fitting/billboard/descriptor.h"
 #include "fitting/depth_quads/descriptor.h"
 #include "fitting/descriptor.h"
 #include "fitting/detail/descriptor.h"
@@ -22,6 +23,7 @@ std::vector<const Descriptor*>& registry() {
       &iwls::kDescriptor,        &spherical_harmonics::kDescriptor,
       &mean::kDescriptor,        &nearest_views::kDescriptor,
       &depth_quads::kDescriptor, &view_dependent_texture::kDescriptor,
+      &billboard::kDescriptor,
   };
   return all;
 }
