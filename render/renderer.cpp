@@ -6,6 +6,7 @@
 #include "fitting/patch_light_field.h"
 #include "render/depth_quads/quad_renderer.h"
 #include "render/gl/offscreen_target.h"
+#include "render/multi_eigenspace/eigenspace_renderer.h"
 #include "render/surface/surface_renderer.h"
 #include "render/view_dependent_texture/view_texture_renderer.h"
 
@@ -25,6 +26,10 @@ std::unique_ptr<Renderer> make_image_renderer(const core::Mesh& mesh,
   if (const auto* texture =
           dynamic_cast<const fitting::view_dependent_texture::ViewTexture*>(&light_field)) {
     return make_view_texture_renderer(mesh, *texture, threads);
+  }
+  if (const auto* spaces =
+          dynamic_cast<const fitting::multi_eigenspace::MultiEigenspace*>(&light_field)) {
+    return make_eigenspace_renderer(*spaces, threads);
   }
   return nullptr;
 }
