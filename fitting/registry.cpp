@@ -20,7 +20,7 @@ namespace {
 /// One line per representation; the first is the default.
 std::vector<const Descriptor*>& registry() {
   static std::vector<const Descriptor*> all{
-      &sparse::kDescriptor,      &detail::kDescriptor,
+      &detail::kDescriptor,      &sparse::kDescriptor,
       &iwls::kDescriptor,        &spherical_harmonics::kDescriptor,
       &mean::kDescriptor,        &nearest_views::kDescriptor,
       &depth_quads::kDescriptor, &view_dependent_texture::kDescriptor,

@@ -82,7 +82,9 @@ void save(const ReplayOptions& options, const Reconstruction& fitted) {
 ReplayReport describe(const ReplayOptions& options, const Reconstruction& fitted) {
   const fitting::LightField& light_field = fitted.light_field();
   const fitting::FitStatistics fit = fitted.fit_statistics();
-  nlohmann::ordered_json settings = to_json(options);
+  ReplayOptions ran = options;
+  ran.reconstruction.fit = fitted.options().fit;  // with what was measured for it
+  nlohmann::ordered_json settings = to_json(ran);
   settings["tolerance"] = fit.tolerance ? nlohmann::ordered_json(*fit.tolerance) : nullptr;
   ReplayReport report{.frames = fitted.frames(),
                       .timer = fitted.times(),
@@ -198,6 +200,7 @@ void run_replay(const ReplayOptions& options, const CommandContext& context) {
   if (options.preview) check_display();
   const capture::Session session = capture::open_session(options.session);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
+  if (!options.note.empty()) context.note(options.note);
   auto frames = capture::open_frames(session, options.reconstruction.frames.start,
                                      options.reconstruction.frames.end);
   if (options.preview) frames = capture::at_recorded_pace(std::move(frames));
