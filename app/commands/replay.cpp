@@ -159,20 +159,20 @@ void add_held_out(const ReplayOptions& options, Reconstruction& fitted,
 std::unique_ptr<LiveSession> make_live_session(const ReplayOptions& options, Reconstruction& fitted,
                                                bool is_camera) {
   if (!options.preview) return nullptr;
-  return std::make_unique<LiveSession>(
-      LiveSession::Parts{.model = fitted.model(),
-                         .history = *fitted.history(),
-                         .baseline = fitted.mean_history(),
-                         .mesh = fitted.mesh(),
-                         .camera = fitted.session().camera,
-                         .board_from_object = fitted.session().board_from_object,
-                         .limits = options.reconstruction.limits,
-                         .is_camera = is_camera,
-                         .refuse_faults = options.reconstruction.refuse_mismatches,
-                         .save = [&options, &fitted](const fitting::LightField& light_field) {
-                           fitting::write_model(options.output, fitted.mesh(), light_field);
-                           return "Saved " + options.output.filename().string();
-                         }});
+  return std::make_unique<LiveSession>(LiveSession::Parts{
+      .model = fitted.model(),
+      .history = *fitted.history(),
+      .baseline = fitted.mean_history(),
+      .mesh = fitted.mesh(),
+      .camera = fitted.session().camera,
+      .board_from_object = fitted.session().board_from_object,
+      .limits = options.reconstruction.limits,
+      .is_camera = is_camera,
+      .refuse_faults = options.reconstruction.refuse_mismatches,
+      .save = [&options, &fitted](const fitting::LightField& light_field) {
+        fitting::write_model(options.output, fitted.mesh(), light_field, fitted.frames().seen);
+        return "Saved " + options.output.filename().string();
+      }});
 }
 
 pipeline::ReconstructionOptions completed(const ReplayOptions& options,
