@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include "fitting/billboard/descriptor.h"
 #include "fitting/depth_quads/descriptor.h"
 #include "fitting/descriptor.h"
 #include "fitting/detail/descriptor.h"
 #include "fitting/iwls/descriptor.h"
 #include "fitting/mean/descriptor.h"
+#include "fitting/multi_eigenspace/descriptor.h"
 #include "fitting/nearest_views/descriptor.h"
 #include "fitting/sparse/descriptor.h"
 #include "fitting/spherical_harmonics/descriptor.h"
@@ -22,6 +24,7 @@ std::vector<const Descriptor*>& registry() {
       &iwls::kDescriptor,        &spherical_harmonics::kDescriptor,
       &mean::kDescriptor,        &nearest_views::kDescriptor,
       &depth_quads::kDescriptor, &view_dependent_texture::kDescriptor,
+      &billboard::kDescriptor,   &multi_eigenspace::kDescriptor,
   };
   return all;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "capture/pose/pose_estimator.h"
+#include "core/samples/patch_share.h"
 #include "core/samples/vertex_view.h"
 #include "core/visibility/visibility.h"
 #include "fitting/option_table.h"
@@ -46,6 +47,7 @@ struct ReconstructionOptions {
   double texel_px = 1.5;  ///< of texel patches: longest edge, pixels, > 0
   core::SamplingLimits limits{};
   PhotometricOptions photometric{};
+  core::PatchShare share{};  ///< of the patches: the only ones that are fitted
   bool refine_mesh = false;        ///< move the mesh's vertices to where the pictures agree
   bool refine_board = false;       ///< refine the tags' places before their poses are used
   bool refuse_mismatches = false;  ///< keep frames out that contradict the model

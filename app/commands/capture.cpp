@@ -10,6 +10,7 @@
 #include "capture/source/http_images.h"
 #include "capture/source/open_camera.h"
 #include "core/diagnostics/error.h"
+#include "core/files/folder_lock.h"
 #include "pipeline/session_mesh.h"
 
 #include <fmt/format.h>
@@ -133,6 +134,7 @@ void capture_session(std::unique_ptr<capture::Camera> camera, const CaptureOptio
   check_size(description, setup.camera);
   check_before_recording(options, setup, context);
   capture::SessionRecorder recorder(options.session, setup, description.fps);
+  const core::FolderLock lock(options.session);
   const capture::Session session = capture::open_session(options.session);
   const FinishOnInterrupt finishing;
   std::atomic<bool> window_closed{false};

@@ -3,6 +3,7 @@
 
 #include "app/commands/frame_options.h"
 #include "app/commands/walk_session.h"
+#include "app/session_lock.h"
 #include "app/terminal_sink.h"
 #include "capture/registration/registration_image.h"
 #include "capture/session/keep_before.h"
@@ -150,6 +151,7 @@ MeshAnswer measure(const MeshOptions& options, capture::Session session,
     throw core::bad_input(options.session, "names no board, so there is no sheet to learn",
                           "film the object on a printed board (sheen board)");
   }
+  const SessionLock lock(options.session, {output_of(options)});
   const capture::Board board = capture::read_board(*session.board);
   session.board_from_object = Eigen::Isometry3d::Identity();
   const auto images = read_images(session, options, sink);
@@ -198,10 +200,10 @@ void add_mesh_command(CommandLine& program, CommandContext& context) {
       "  sheen mesh SESSION                            write SESSION/object.ply and name it in\n"
       "                                                session.json\n"
       "  sheen mesh SESSION --picture check.png        look whether its outlines lie right\n"
-      "  sheen mesh SESSION -o shape.ply               leave the session as it is\n"
+      "  sheen mesh SESSION -o shape.ply               leave the session's mesh as it is\n"
       "With --force, what it replaces is kept: object.before-mesh.ply, session.before-mesh.json.");
   command.option("session", options->session, "Session folder, filmed on a board").required();
-  command.option("-o,--output", options->output, "Write the mesh here and leave the session alone")
+  command.option("-o,--output", options->output, "Write the mesh here, not into the session")
       .type("FILE.ply");
   command.option("--picture", options->image, "Also draw the mesh's outline over six frames")
       .type("FILE.png");

@@ -147,7 +147,7 @@ std::vector<PosedFrame> refine_held_out(Reconstruction& fitted) {
 void add_held_out(const ReplayOptions& options, Reconstruction& fitted,
                   const CommandContext& context, ReplayReport& report) {
   const std::vector<PosedFrame>& held_out = fitted.frames().held_out;
-  if (held_out.empty()) return;
+  if (held_out.empty() || !options.reconstruction.share.is_whole()) return;
   auto summaries = evaluate_held_out(fitted, held_out, context);
   report.held_out = std::move(summaries[0]);
   report.held_out_mean = std::move(summaries[1]);
@@ -282,7 +282,8 @@ FitOutcome fit_session(const ReplayOptions& options, const capture::Session& ses
                         completed(options, context), sink);
   if (!options.state_output.empty()) {
     state.open(options.state_output,
-               {fitted.options().representation, fitted.options().fit, fitted.mesh()});
+               {fitted.options().representation, fitted.options().fit, fitted.mesh(),
+                fitted.options().share});
   }
   const auto live = make_live_session(options, fitted, camera != nullptr);
   FitOutcome outcome;

@@ -3,8 +3,10 @@
 
 #include "app/commands/frame_options.h"
 #include "app/commands/representation_options.h"
+#include "core/text/number.h"
 #include "fitting/descriptor.h"
 
+#include <charconv>
 #include <memory>
 #include <string>
 #include <utility>
@@ -43,6 +45,33 @@ void reconcile_patches(pipeline::ReconstructionOptions& fit) {
                      " contradicts --representation " + fit.representation);
   }
   if (has_texture) fit.patches = Patches::detail;
+}
+
+core::PatchShare share_from(const std::string& text) {
+  core::PatchShare share;
+  const char* const end = text.data() + text.size();
+  const auto number = std::from_chars(text.data(), end, share.number);
+  const bool goes_on = number.ec == std::errc() && number.ptr != end && *number.ptr == '/';
+  const auto of = goes_on ? std::from_chars(number.ptr + 1, end, share.of) : number;
+  if (!goes_on || of.ec != std::errc() || of.ptr != end || share.number < 1 ||
+      share.number > share.of) {
+    throw UsageError("--part is \"" + core::quotable(text) + "\", write 1/3, 2/3 and 3/3");
+  }
+  return share;
+}
+
+/// A share is of use to be merged, and what looks at the model while it grows needs all of it.
+void check_share(const ReplayOptions& options) {
+  const pipeline::ReconstructionOptions& fit = options.reconstruction;
+  if (fit.share.is_whole()) return;
+  if (options.state_output.empty()) {
+    throw UsageError("--part needs --state, sheen merge joins the states of all parts");
+  }
+  if (fit.photometric.refine_poses || fit.photometric.exposure || fit.refuse_mismatches) {
+    throw UsageError(
+        "--part excludes --refine-poses, --exposure and --refuse-mismatches: they look at the "
+        "whole model");
+  }
 }
 
 }  // namespace
@@ -150,6 +179,13 @@ void add_replay_options(Command command, ReplayOptions& options) {
           .type("FILE");
   preview.excludes(state);
   refine_mesh.excludes(state);  // states know the session's mesh
+  command
+      .option(
+          "--part", [&fit](const std::string& text) { fit.share = share_from(text); },
+          "Fit the k-th of n equal shares of the patches alone, 2/3, and leave its samples in "
+          "--state; sheen merge of all n states gives the whole model")
+      .type("K/N");
+  command.after_parsing([&options] { check_share(options); });
   command.option("--poses-out", options.poses_output, "Also save the poses, TUM form").type("FILE");
 }
 

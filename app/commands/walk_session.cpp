@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/walk_session.h"
 
+#include "app/session_lock.h"
 #include "capture/calibration/camera_file.h"
 #include "capture/session/new_session.h"
 #include "capture/session/session_file.h"
@@ -116,6 +117,9 @@ capture::Session open_walk(const std::filesystem::path& folder, const WalkOption
   const bool lacks_board = !session.board && (!session.poses || lacks_camera);
   if (!options.camera.empty()) static_cast<void>(capture::read_camera(options.camera));
   if (!options.board.empty()) static_cast<void>(capture::read_board(options.board));
+  std::optional<SessionLock> lock;
+  if (lacks_camera || lacks_board)
+    lock.emplace(folder, std::initializer_list<std::filesystem::path>{folder / "session.json"});
   take(options.camera, folder, "--camera", session.camera_file, "camera.yaml");
   take(options.board, folder, "--board", session.board, "board.yaml");
   if (!lacks_camera && !lacks_board) return session;

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace sheen::fitting::multi_eigenspace {
+
+/// A view and its part of a mixture.
+struct ViewShare {
+  std::uint32_t view_idx;
+  float share;
+};
+
+/// Directions of views and the triangles between them: Delaunay's on the sphere but for one hole
+/// where views are farthest. Directions on a circle, as of a turntable, are joined along it.
+class ViewSphere {
+ public:
+  /// Unit vectors; of equal ones the first counts.
+  explicit ViewSphere(std::vector<Eigen::Vector3d> directions);
+
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& directions() const { return directions_; }
+  /// Views that share an edge with one, by rising angle.
+  [[nodiscard]] const std::vector<std::uint32_t>& neighbours(std::size_t view_idx) const {
+    return neighbours_[view_idx];
+  }
+  /// Linear between the corners of the triangle that holds the direction; outside all of them
+  /// along the nearest edge. One to three shares with sum 1, none where there is no view.
+  [[nodiscard]] std::vector<ViewShare> shares(const Eigen::Vector3d& direction) const;
+
+ private:
+  using Edge = std::array<std::uint32_t, 2>;
+  struct Triangle {
+    std::array<std::uint32_t, 3> corners;
+    Eigen::Matrix3d shares_from_direction;
+  };
+
+  void triangulate();
+  void add_triangle(const std::array<std::uint32_t, 3>& corners);
+
+  std::vector<Eigen::Vector3d> directions_;
+  std::vector<Edge> edges_;
+  std::vector<Triangle> triangles_;
+  std::vector<std::vector<std::uint32_t>> neighbours_;
+};
+
+}  // namespace sheen::fitting::multi_eigenspace
