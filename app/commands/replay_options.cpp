@@ -127,13 +127,23 @@ void add_model_options(Command command, ReplayOptions& options) {
 
 void add_replay_options(Command command, ReplayOptions& options) {
   pipeline::ReconstructionOptions& fit = options.reconstruction;
-  command.option("session", options.session, "Session folder").required();
+  command
+      .option("session", options.session,
+              "Session folder, or a video or folder of pictures of a walk round an object on a "
+              "printed board")
+      .required();
   command.option("-o,--output", options.output, "Model to write (.glb)")
       .required()
       .check([](const std::string& path) {
         return path.ends_with(".glb") ? std::string() : path + " does not end in .glb";
       })
       .type("MODEL.glb");
+  command
+      .option("--session-out", options.new_session,
+              "For a video or pictures: the session folder to make (default: the model's name "
+              "without .glb)")
+      .type("DIR");
+  add_walk_options(command, options.walk);
   const auto patches = std::make_shared<std::optional<Patches>>();
   command.choice(
       "--patches", *patches, kPatches,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/command_line/command_line.h"
+#include "app/commands/walk_session.h"
 #include "pipeline/options.h"
 
 #include <nlohmann/json.hpp>
@@ -16,7 +17,9 @@ enum class VisibilityMethod { automatic, raster, rays, depth };
 
 /// Everything `sheen replay` may be asked.
 struct ReplayOptions {
-  std::filesystem::path session;
+  std::filesystem::path session;       ///< or a video, or a folder of pictures
+  std::filesystem::path new_session;   ///< made of a video or pictures; empty: named as the model
+  WalkOptions walk;                    ///< what a session that lacks it takes
   std::filesystem::path output;        ///< the model
   std::filesystem::path mean_output;   ///< the mean colours as a model; empty: not written
   std::filesystem::path mesh_output;   ///< the refined mesh, PLY; empty: not written

@@ -50,7 +50,7 @@ TEST_F(MeshCommand, WhoeverWritesIntoASessionHasItAlone) {
 TEST_F(MeshCommand, MakesASessionWithoutAMeshOneThatReplays) {
   replace("session.json", R"(,\s*"object": \{[^}]*\})", "");
   std::filesystem::remove(session_ / "object.ply");
-  const ProgramRun without = run_sheen({"replay", session_, "-o", model_});
+  const ProgramRun without = run_sheen({"survey", session_});
   EXPECT_EQ(without.exit_code, 2);
   EXPECT_NE(without.standard_error.find("has no mesh of its object yet; make one: sheen mesh"),
             std::string::npos)
