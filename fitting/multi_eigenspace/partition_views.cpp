@@ -175,13 +175,16 @@ void Sharing::add_missing() {
   }
 }
 
-/// Whether groups are as good as grown ones on the mean, and no view is drawn badly.
+/// Whether the views are drawn within the tolerance on the mean, and none badly.
 bool Sharing::is_good() const {
+  double sum = 0;
+  double most = 0;
   for (std::size_t view = 0; view < count(); ++view) {
-    if (error(view, owners_[view]) > kWorst * kWorst * rule_.allowed()) return false;
+    sum += error(view, owners_[view]);
+    most = std::max(most, error(view, owners_[view]));
   }
-  return std::ranges::all_of(
-      groups_, [&](const ViewGroup& group) { return group.residuals.mean() <= rule_.allowed(); });
+  return sum <= rule_.allowed() * static_cast<double>(count()) &&
+         most <= kWorst * kWorst * rule_.allowed();
 }
 
 void Sharing::drop_needless() {
