@@ -124,7 +124,7 @@ void EigenspaceFitter::pack() {
   for (const ViewGroup& group : partition.groups) {
     std::vector<std::uint32_t> guards;
     for (const std::uint32_t member : group.members) {
-      for (const std::uint32_t next : sphere.neighbours(member)) {
+      for (const std::uint32_t next : sphere.mixed_with(member)) {
         if (!std::ranges::binary_search(group.members, next)) guards.push_back(next);
       }
     }

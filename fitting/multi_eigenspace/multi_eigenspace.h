@@ -39,8 +39,8 @@ struct SpaceShare {
 };
 
 /// Views of the object as a whole, rectified to pictures and packed into several eigenspaces of few
-/// dimensions each; after Bischof et al., "multiple eigenspaces" (docs/systems.md), from headings
-/// to all directions. The mean colours of the vertices are for programs that know nothing of it.
+/// dimensions each (docs/systems.md); after Leonardis, Bischof and Maver, "Multiple eigenspaces"
+/// (2002), from headings to all directions. The mean colours of the vertices are for programs that know nothing of it.
 class MultiEigenspace final : public LightField {
  public:
   /// Without any view.

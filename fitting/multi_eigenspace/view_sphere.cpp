@@ -77,11 +77,18 @@ class PlaceIndex {
 }  // namespace
 
 ViewSphere::ViewSphere(std::vector<Eigen::Vector3d> directions)
-    : directions_(std::move(directions)), neighbours_(directions_.size()) {
+    : directions_(std::move(directions)),
+      neighbours_(directions_.size()),
+      mixed_with_(directions_.size()) {
   if (directions_.size() > 1) triangulate();
   for (const auto& [a, b] : edges_) {
-    neighbours_[a].push_back(b);
-    neighbours_[b].push_back(a);
+    mixed_with_[a].push_back(b);
+    mixed_with_[b].push_back(a);
+  }
+  for (const Edge& edge : edges_) {
+    if (has_view_between(edge)) continue;
+    neighbours_[edge[0]].push_back(edge[1]);
+    neighbours_[edge[1]].push_back(edge[0]);
   }
   for (std::size_t i = 0; i < neighbours_.size(); ++i) {
     std::ranges::sort(neighbours_[i], [&](std::uint32_t a, std::uint32_t b) {
@@ -92,6 +99,19 @@ ViewSphere::ViewSphere(std::vector<Eigen::Vector3d> directions)
   }
 }
 
+/// Within the circle that has the edge as its diameter. If there is one, then also a neighbour of
+/// an end.
+bool ViewSphere::has_view_between(const Edge& edge) const {
+  const Eigen::Vector3d middle = directions_[edge[0]] + directions_[edge[1]];
+  const auto is_between = [&](std::uint32_t view) {
+    constexpr double rounding = 1e-9;
+    return view != edge[0] && view != edge[1] &&
+           directions_[view].dot(middle) > directions_[edge[0]].dot(middle) + rounding;
+  };
+  return std::ranges::any_of(mixed_with_[edge[0]], is_between) ||
+         std::ranges::any_of(mixed_with_[edge[1]], is_between);
+}
+
 void ViewSphere::triangulate() {
   // The triangulation's own outermost corners lie three times as far as its border; the views are
   // small within it, so that hardly any edge of their hull is lost to those.
@@ -100,7 +120,11 @@ void ViewSphere::triangulate() {
   const auto points = in_plane(directions_, farthest_from(directions_), reach);
   const PlaceIndex index(points);
   cv::Subdiv2D plane(cv::Rect(-border, -border, 2 * border, 2 * border));
-  for (const auto& point : points) plane.insert(point);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    plane.insert(points[i]);
+    const auto first = static_cast<std::uint32_t>(index.find(points[i].x, points[i].y));
+    if (first != i) edges_.push_back({first, static_cast<std::uint32_t>(i)});
+  }
 
   std::vector<cv::Vec4f> edges;
   plane.getEdgeList(edges);
