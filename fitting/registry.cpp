@@ -2,6 +2,7 @@
 #include "fitting/depth_quads/descriptor.h"
 #include "fitting/descriptor.h"
 #include "fitting/detail/descriptor.h"
+#include "fitting/eigen_texture/descriptor.h"
 #include "fitting/iwls/descriptor.h"
 #include "fitting/mean/descriptor.h"
 #include "fitting/nearest_views/descriptor.h"
@@ -22,6 +23,7 @@ std::vector<const Descriptor*>& registry() {
       &iwls::kDescriptor,        &spherical_harmonics::kDescriptor,
       &mean::kDescriptor,        &nearest_views::kDescriptor,
       &depth_quads::kDescriptor, &view_dependent_texture::kDescriptor,
+      &eigen_texture::kDescriptor,
   };
   return all;
 }
