@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "fitting/billboard/descriptor.h"
 #include "fitting/depth_quads/descriptor.h"
 #include "fitting/descriptor.h"
 #include "fitting/detail/descriptor.h"
@@ -19,15 +20,11 @@ namespace {
 /// One line per representation; the first is the default.
 std::vector<const Descriptor*>& registry() {
   static std::vector<const Descriptor*> all{
-      &sparse::kDescriptor,
-      &detail::kDescriptor,
-      &iwls::kDescriptor,
-      &spherical_harmonics::kDescriptor,
-      &mean::kDescriptor,
-      &nearest_views::kDescriptor,
-      &depth_quads::kDescriptor,
-      &view_dependent_texture::kDescriptor,
-      &multi_eigenspace::kDescriptor,
+      &detail::kDescriptor,      &sparse::kDescriptor,
+      &iwls::kDescriptor,        &spherical_harmonics::kDescriptor,
+      &mean::kDescriptor,        &nearest_views::kDescriptor,
+      &depth_quads::kDescriptor, &view_dependent_texture::kDescriptor,
+      &billboard::kDescriptor,   &multi_eigenspace::kDescriptor,
   };
   return all;
 }

@@ -10,13 +10,13 @@
 #include "capture/synthetic/motion_jpeg_file.h"
 #include "capture/synthetic/render_camera.h"
 #include "capture/synthetic/torus_knot.h"
-#include "core/diagnostics/error.h"
 #include "core/files/staged_output.h"
+#include "core/files/write_file.h"
+#include "core/image/png.h"
 #include "core/mesh/bounds.h"
 #include "core/mesh/read_mesh.h"
 
 #include <Eigen/Geometry>
-#include <opencv2/imgcodecs.hpp>
 
 #include <algorithm>
 #include <array>
@@ -40,11 +40,6 @@ void require_range(const char* option, int value, int low, int high) {
   if (value >= low && value <= high) return;
   throw std::invalid_argument(std::string(option) + ": " + std::to_string(value) + " is not in [" +
                               std::to_string(low) + ", " + std::to_string(high) + "]");
-}
-
-core::Error write_failure(const fs::path& path) {
-  return {core::Error::Kind::run_failed, path, "cannot be written",
-          "check free space and permissions"};
 }
 
 /// Counts images for the caller.
@@ -123,10 +118,8 @@ void write_held_out(const fs::path& folder, const Scene& scene, const core::Came
     std::array<char, 32> name{};
     std::snprintf(name.data(), name.size(), "%04zu.png", i);
     const fs::path file = folder / "images" / name.data();
-    if (!cv::imwrite(file.string(), develop(exposure.light, kNoNoise, 0),
-                     {cv::IMWRITE_PNG_COMPRESSION, 9})) {
-      throw write_failure(file);
-    }
+    const auto png = core::encode_png(develop(exposure.light, kNoNoise, 0));
+    core::write_file(file, {reinterpret_cast<const char*>(png.data()), png.size()});
     counter.advance();
   }
 }
