@@ -34,15 +34,31 @@ constexpr int kRunFailed = 1;
 constexpr int kBadInput = 2;
 constexpr int kInterrupted = 130;  // 128 + SIGINT, as shells expect
 
+constexpr const char* kThreeCommands =
+    "From an object to its light field in three commands:\n"
+    "  sheen board                          print sheen-board.pdf at 100 %, put the object on it\n"
+    "  sheen replay walk.mp4 -o model.glb   after filming a walk round it: camera and mesh are\n"
+    "                                       found from the film\n"
+    "  sheen view model.glb                 look at it\n"
+    "All commands: sheen --help\n";
+
 }  // namespace
 
 int main(int argc, char** argv) {
   using namespace sheen;
+  if (argc == 1) {
+    std::fputs(kThreeCommands, stdout);
+    return kDone;
+  }
   app::CommandLine program(
       "Sheen captures how an object looks from every direction: a recording of a walk round it\n"
       "becomes a surface light field that can be drawn from anywhere.",
       "sheen " SHEEN_VERSION,
-      "Start with the recording that comes with the source:\n"
+      "Film a walk round an object on a printed sheet:\n"
+      "  sheen board                          the sheet, to be printed at 100 %\n"
+      "  sheen replay walk.mp4 -o model.glb   camera, mesh and light field from the film\n"
+      "  sheen view model.glb                 look at it\n"
+      "Or start with the recording that comes with the source:\n"
       "  sheen replay sample_data/glossy -o model.glb --hold-out 5\n"
       "  sheen evaluate model.glb sample_data/glossy/held_out\n"
       "Exit codes: 0 done, 1 failed while running, 2 bad arguments or bad input.");

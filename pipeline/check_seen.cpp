@@ -112,13 +112,13 @@ void check_something_was_posed(const capture::Session& session, const FrameChoic
 }
 
 void check_something_was_seen(const capture::Session& session, const FrameChoice& choice,
-                              const FrameStatistics& frames, std::size_t samples,
+                              const FrameStatistics& frames, bool patches_were_seen,
                               const SessionScene& scene) {
   check_something_was_posed(session, choice, frames);
-  if (samples == 0 && frames.frames_fitted + frames.frames_refused > 0) {
+  if (!patches_were_seen && frames.frames_fitted + frames.frames_refused > 0) {
     throw unseen(session, frames, scene);
   }
-  if (samples == 0) {
+  if (!patches_were_seen) {
     throw core::bad_input(session.mesh, "is not seen in any posed frame",
                           "check T_stage_object and that mesh and board are in metres");
   }

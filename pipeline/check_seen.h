@@ -12,7 +12,7 @@ namespace sheen::pipeline {
 /// patch was seen. Looks which file is at fault: for poses from a file its stamps, for tags a few
 /// of the session's images (capture/pose/board_diagnosis.h).
 void check_something_was_seen(const capture::Session& session, const FrameChoice& choice,
-                              const FrameStatistics& frames, std::size_t samples,
+                              const FrameStatistics& frames, bool patches_were_seen,
                               const SessionScene& scene);
 
 /// The first half of it.

@@ -53,6 +53,7 @@ void FitStage::observe(const capture::Frame& frame, core::StageTimes& times, Pos
     const auto timing = times.measure("align");
     gain = correct_exposure(*samples);
   }
+  parts_.share.keep(parts_.mesh.positions.size(), *samples);
   const auto counts = core::count_rejections(parts_.observer.view());
   for (std::size_t i = 0; i < counts.size(); ++i) statistics_.vertex_rejections[i] += counts[i];
 

@@ -41,6 +41,7 @@ class FitStage {
     CaptureEvidence& evidence;  ///< looks at what is fitted
     HoldOut hold_out;
     PhotometricOptions photometric = {};
+    core::PatchShare share = {};  ///< whose samples are fitted
     /// Asked before a frame's samples are integrated, on the thread that fits; false keeps them
     /// out. May be empty.
     std::function<bool(const core::SampleBatch&)> admit = {};

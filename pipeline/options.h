@@ -2,6 +2,7 @@
 #pragma once
 
 #include "capture/pose/pose_estimator.h"
+#include "core/samples/patch_share.h"
 #include "core/samples/vertex_view.h"
 #include "core/visibility/visibility.h"
 #include "fitting/option_table.h"
@@ -33,19 +34,20 @@ struct PhotometricOptions {
 };
 
 /// Where patches lie: one per vertex of the mesh; the mesh subdivided until its edges are as short
-/// as a pixel's footprint; one per vertex and a texture of such a footprint, which is what
-/// representation "detail" is.
+/// as a pixel's footprint; one per vertex and, where the representation is "detail", a texture of
+/// such a footprint.
 enum class Patches { vertex, texel, detail };
 
 /// Everything a reconstruction may be asked.
 struct ReconstructionOptions {
-  std::string representation = "sparse";  ///< name of a descriptor (fitting/descriptor.h)
+  std::string representation = "detail";  ///< name of a descriptor (fitting/descriptor.h)
   fitting::OptionValues fit{};            ///< its settings
   FrameChoice frames{};
-  Patches patches = Patches::vertex;
+  Patches patches = Patches::detail;
   double texel_px = 1.5;  ///< of texel patches: longest edge, pixels, > 0
   core::SamplingLimits limits{};
   PhotometricOptions photometric{};
+  core::PatchShare share{};  ///< of the patches: the only ones that are fitted
   bool refine_mesh = false;        ///< move the mesh's vertices to where the pictures agree
   bool refine_board = false;       ///< refine the tags' places before their poses are used
   bool refuse_mismatches = false;  ///< keep frames out that contradict the model

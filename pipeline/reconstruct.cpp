@@ -135,6 +135,7 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
       .evidence = *evidence,
       .hold_out = {options.frames.hold_out},
       .photometric = options.photometric,
+      .share = options.share,
       .admit = [this](const core::SampleBatch& batch) { return admit(batch, listener); },
       .on_samples = std::move(inputs.on_samples)});
 }
@@ -277,8 +278,9 @@ void Reconstruction::run(ProgressSink& sink, FrameListener* listener) {
   impl_->stage->note_damaged(recording.damaged);
   for (const std::string& note : recording.notes) sink.note(note);
   if (!frames.posed.empty()) impl_->scene.finish(sink);
-  check_something_was_seen(impl_->session, impl_->options.frames, frames,
-                           impl_->fitter->statistics().samples, impl_->scene);
+  // A share of the patches may lie underneath.
+  const bool seen = impl_->fitter->statistics().samples > 0 || !impl_->options.share.is_whole();
+  check_something_was_seen(impl_->session, impl_->options.frames, frames, seen, impl_->scene);
   impl_->tell_new(impl_->evidence->findings(), sink);
   impl_->finish();
 }

@@ -251,7 +251,7 @@ void bind_model(py::module_& module) {
       py::arg("path"), "Reads a .glb that sheen wrote. Raises sheen.InputError for anything else.");
   module.def(
       "reconstruct", &reconstruct, py::arg("session"), py::kw_only(),
-      py::arg("representation") = "sparse", py::arg("options") = fitting::OptionValues{},
+      py::arg("representation") = "detail", py::arg("options") = fitting::OptionValues{},
       py::arg("start") = 0, py::arg("end") = py::none(), py::arg("hold_out") = 0,
       py::arg("threads") = 1, py::arg("progress") = py::none(),
       "Poses every frame of a session, fits a light field and returns the model.\n\n"

@@ -4,9 +4,11 @@
 #include "core/diagnostics/error.h"
 #include "fitting/descriptor.h"
 #include "fitting/patch_light_field.h"
+#include "render/billboard/billboard_renderer.h"
 #include "render/depth_quads/quad_renderer.h"
 #include "render/eigen_texture/eigen_texture_renderer.h"
 #include "render/gl/offscreen_target.h"
+#include "render/multi_eigenspace/eigenspace_renderer.h"
 #include "render/surface/surface_renderer.h"
 #include "render/view_dependent_texture/view_texture_renderer.h"
 
@@ -26,6 +28,13 @@ std::unique_ptr<Renderer> make_image_renderer(const core::Mesh& mesh,
   if (const auto* texture =
           dynamic_cast<const fitting::view_dependent_texture::ViewTexture*>(&light_field)) {
     return make_view_texture_renderer(mesh, *texture, threads);
+  }
+  if (const auto* billboards = dynamic_cast<const fitting::billboard::Billboards*>(&light_field)) {
+    return make_billboard_renderer(*billboards, threads);
+  }
+  if (const auto* spaces =
+          dynamic_cast<const fitting::multi_eigenspace::MultiEigenspace*>(&light_field)) {
+    return make_eigenspace_renderer(*spaces, threads);
   }
   return nullptr;
 }

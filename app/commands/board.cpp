@@ -12,7 +12,7 @@ namespace {
 
 struct BoardOptions {
   capture::BoardDesign design;
-  std::filesystem::path output;
+  std::filesystem::path output = "sheen-board.pdf";
   double measured_mm = capture::kRulerMm;
 };
 
@@ -47,6 +47,7 @@ void run_board(const BoardOptions& options, const CommandContext& context) {
                    {"board", yaml.string()},
                    {"sheets", plan.sheets.size()},
                    {"tags", plan.board.tags.size()},
+                   {"first_id", plan.first_id},
                    {"columns", plan.columns},
                    {"rows", plan.rows},
                    {"tag_mm", plan.design.tag_mm},
@@ -89,10 +90,12 @@ void add_design_options(Command command, BoardOptions& options) {
   const std::vector<std::string> families(capture::kPrintableFamilies.begin(),
                                           capture::kPrintableFamilies.end());
   command.option("--family", design.family, "Tag family").one_of(families).show_default();
-  command.option("--first-id", design.first_id, "Id of the tag at the lower left")
+  command
+      .option("--first-id", design.first_id,
+              "Id of the tag at the lower left (default: 0; of the sheet that needs no board.yaml "
+              "500, on letter 540)")
       .not_negative()
-      .type("ID")
-      .show_default();
+      .type("ID");
 }
 
 }  // namespace
@@ -103,12 +106,14 @@ void add_board_command(CommandLine& program, CommandContext& context) {
       program.command("board", "Make a printable board of tags (PDF) and its board.yaml");
   command.example(
       "Examples:\n"
-      "  sheen board -o board.pdf                        one A4 sheet, free middle\n"
-      "  sheen board -o board.pdf --measured-mm 148.6    the ruler of my print is 148.6 mm long\n"
+      "  sheen board                                     the sheet that needs no board.yaml, A4\n"
+      "  sheen board --paper letter                      the same on US letter\n"
+      "  sheen board --measured-mm 148.6                 the ruler of my print is 148.6 mm long:\n"
+      "                                                  from then on --board sheen-board.yaml\n"
       "  sheen board -o big.pdf --tag-mm 40 --columns 9 --rows 9    several sheets\n"
       "  sheen board -o grid.pdf --full --tag-mm 25      full grid, for sheen calibrate");
   command.option("-o,--output", options->output, "PDF to write; the .yaml comes beside it")
-      .required()
+      .show_default()
       .check([](const std::string& text) {
         return std::filesystem::path(text).extension() == ".pdf" ? std::string()
                                                                  : "must end with .pdf";

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/compare.h"
 
+#include "app/commands/billboard_comparison.h"
 #include "app/commands/frame_options.h"
 #include "app/commands/paper_comparison.h"
 #include "app/interrupt.h"
@@ -21,6 +22,8 @@ namespace {
 
 constexpr int kDefaultHoldOut = 5;
 constexpr int kLargestHoldOut = 1'000'000;
+constexpr int kLeastBillboard_px = 32;
+constexpr int kMostBillboard_px = 1024;
 
 using evaluation::Candidate;
 using evaluation::Comparison;
@@ -31,7 +34,9 @@ struct CompareOptions {
   std::filesystem::path output;
   std::vector<std::string> only;  ///< names of candidates; empty: all
   pipeline::FrameChoice frames;
-  bool paper = false;  ///< the paper's experiments instead of sessions
+  bool paper = false;       ///< the paper's experiments instead of sessions
+  bool billboards = false;  ///< those on billboards instead
+  BillboardComparison billboard{};
 };
 
 /// Counts sessions and candidates as they are done: a session's observations are one step, each
@@ -129,6 +134,10 @@ void run_compare(const CompareOptions& options, const CommandContext& context) {
     compare_with_paper(options.output, context);
     return;
   }
+  if (options.billboards) {
+    compare_billboards(options.billboard, options.output, context);
+    return;
+  }
   context.check_outputs({});
   check_sessions(options.folders, context);
   const core::StagedOutput staging(options.output / "comparison");
@@ -170,8 +179,30 @@ void add_compare_command(CommandLine& program, CommandContext& context) {
           .flag("--paper", options->paper,
                 "Instead of sessions: the paper's own experiments, beside its figures")
           .excludes(sessions);
-  command.after_parsing([sessions, paper] {
-    if (!sessions.is_given() && !paper.is_given()) throw UsageError("sessions is required");
+  const Option billboards =
+      command
+          .flag("--billboards", options->billboards,
+                "Instead of sessions: how frames of billboards should be baked, beside a paper's "
+                "figures (docs/systems.md)")
+          .excludes(sessions)
+          .excludes(paper);
+  const Option object = command
+                            .option("--object", options->billboard.mesh,
+                                    "With --billboards: a mesh instead of a knot")
+                            .type("FILE");
+  const Option image_size = command
+                                .option("--image-size", options->billboard.side_px,
+                                        "With --billboards: side of frames and images, pixels")
+                                .range(kLeastBillboard_px, kMostBillboard_px)
+                                .type("N")
+                                .show_default();
+  command.after_parsing([sessions, paper, billboards, object, image_size] {
+    if (!billboards.is_given() && (object.is_given() || image_size.is_given())) {
+      throw UsageError("--object and --image-size are of --billboards");
+    }
+    if (!sessions.is_given() && !paper.is_given() && !billboards.is_given()) {
+      throw UsageError("sessions is required");
+    }
   });
   command.option("-o,--output", options->output, "Folder to write to").required().type("DIR");
   command

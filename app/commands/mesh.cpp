@@ -2,9 +2,12 @@
 #include "app/commands/mesh.h"
 
 #include "app/commands/frame_options.h"
+#include "app/commands/walk_session.h"
+#include "app/session_lock.h"
 #include "app/terminal_sink.h"
 #include "capture/registration/registration_image.h"
 #include "capture/session/keep_before.h"
+#include "capture/session/new_session.h"
 #include "capture/session/session_file.h"
 #include "core/diagnostics/error.h"
 #include "core/image/write_image.h"
@@ -29,6 +32,7 @@ struct MeshOptions {
   std::filesystem::path image;
   pipeline::FrameChoice frames;
   int hold_out = 0;
+  WalkOptions walk;
   bool force = false;
 };
 
@@ -140,19 +144,16 @@ nlohmann::ordered_json to_json(const reconstruction::ObjectMesh& found) {
           {"confidence", mean_of(found.confidence)}};
 }
 
-void run_mesh(const MeshOptions& options, const CommandContext& context) {
-  context.check_outputs({output_of(options), options.image});
-  capture::Session session = capture::open_session(options.session);
-  for (const std::string& warning : session.warnings) context.note("note: " + warning);
-  check_nothing_is_replaced(options, session);
+/// Measures the mesh of an open session and saves it.
+MeshAnswer measure(const MeshOptions& options, capture::Session session,
+                   pipeline::ProgressSink& sink, const CommandContext& context) {
   if (!session.board) {
     throw core::bad_input(options.session, "names no board, so there is no sheet to learn",
                           "film the object on a printed board (sheen board)");
   }
+  const SessionLock lock(options.session, {output_of(options)});
   const capture::Board board = capture::read_board(*session.board);
   session.board_from_object = Eigen::Isometry3d::Identity();
-
-  TerminalSink sink(context);
   const auto images = read_images(session, options, sink);
   const auto found = reconstruction::measure_object(
       options.session, session.camera, board, images, context.threads,
@@ -161,10 +162,34 @@ void run_mesh(const MeshOptions& options, const CommandContext& context) {
       });
   if (!options.image.empty()) draw_outlines(options, session, found.mesh, images);
   const std::string lines = save(options, found);
-  context.publish(to_json(found), describe(found) + lines);
+  return {to_json(found), describe(found) + lines};
+}
+
+void run_mesh(const MeshOptions& options, const CommandContext& context) {
+  context.check_outputs({output_of(options), options.image});
+  TerminalSink sink(context);
+  check_nothing_is_replaced(options, capture::open_unfinished_session(options.session));
+  WalkAnswer walk;
+  const capture::Session session =
+      open_walk(options.session, options.walk, options.frames, sink, walk);
+  for (const std::string& warning : session.warnings) context.note("note: " + warning);
+  MeshAnswer answer = measure(options, session, sink, context);
+  if (!walk.document.is_null()) answer.document["walk"] = walk.document;
+  context.publish(answer.document, walk.text + answer.text);
 }
 
 }  // namespace
+
+MeshAnswer add_measured_mesh(const capture::Session& session, const pipeline::FrameChoice& frames,
+                             pipeline::ProgressSink& sink, const CommandContext& context) {
+  MeshOptions options;
+  options.session = session.folder;
+  options.frames = frames;
+  options.frames.hold_out = 0;
+  options.hold_out = frames.hold_out;
+  check_nothing_is_replaced(options, session);
+  return measure(options, session, sink, context);
+}
 
 void add_mesh_command(CommandLine& program, CommandContext& context) {
   auto options = std::make_shared<MeshOptions>();
@@ -175,10 +200,10 @@ void add_mesh_command(CommandLine& program, CommandContext& context) {
       "  sheen mesh SESSION                            write SESSION/object.ply and name it in\n"
       "                                                session.json\n"
       "  sheen mesh SESSION --picture check.png        look whether its outlines lie right\n"
-      "  sheen mesh SESSION -o shape.ply               leave the session as it is\n"
+      "  sheen mesh SESSION -o shape.ply               leave the session's mesh as it is\n"
       "With --force, what it replaces is kept: object.before-mesh.ply, session.before-mesh.json.");
-  command.option("session", options->session, "Session folder, with a board").required();
-  command.option("-o,--output", options->output, "Write the mesh here and leave the session alone")
+  command.option("session", options->session, "Session folder, filmed on a board").required();
+  command.option("-o,--output", options->output, "Write the mesh here, not into the session")
       .type("FILE.ply");
   command.option("--picture", options->image, "Also draw the mesh's outline over six frames")
       .type("FILE.png");
@@ -188,6 +213,7 @@ void add_mesh_command(CommandLine& program, CommandContext& context) {
               "Do not look at the frames that replay --hold-out N keeps out; 0: look at all")
       .not_negative()
       .show_default();
+  add_walk_options(command, options->walk);
   add_frame_options(command, options->frames);
   add_common_options(command, context);
   command.action([options, &context] { run_mesh(*options, context); });

@@ -3,6 +3,7 @@
 
 #include "app/commands/frame_options.h"
 #include "app/interrupt.h"
+#include "app/session_lock.h"
 #include "app/terminal_sink.h"
 #include "capture/registration/placement.h"
 #include "capture/registration/registration.h"
@@ -157,6 +158,7 @@ void run_register(const RegisterOptions& options, const CommandContext& context)
   const auto output = options.output.empty() ? session_file : options.output;
   context.check_outputs({output, options.image});
   capture::Session session = capture::open_session(options.session);
+  const SessionLock lock(options.session, {output});
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
   TerminalSink sink(context);
   core::Mesh mesh = pipeline::read_session_mesh(session, sink);

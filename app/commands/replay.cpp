@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/replay.h"
 
+#include "app/commands/mesh.h"
+#include "app/commands/walk_session.h"
 #include "app/interrupt.h"
 #include "app/preview/live_session.h"
 #include "app/preview/run_preview.h"
@@ -8,6 +10,7 @@
 #include "app/state/session_states.h"
 #include "app/terminal_sink.h"
 #include "capture/pose/trajectory.h"
+#include "capture/session/new_session.h"
 #include "capture/source/paced_source.h"
 #include "core/mesh/placed_ply.h"
 #include "core/visibility/ray_visibility.h"
@@ -20,6 +23,7 @@
 #include "render/visibility/depth_visibility.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 namespace sheen::app {
@@ -82,7 +86,9 @@ void save(const ReplayOptions& options, const Reconstruction& fitted) {
 ReplayReport describe(const ReplayOptions& options, const Reconstruction& fitted) {
   const fitting::LightField& light_field = fitted.light_field();
   const fitting::FitStatistics fit = fitted.fit_statistics();
-  nlohmann::ordered_json settings = to_json(options);
+  ReplayOptions ran = options;
+  ran.reconstruction.fit = fitted.options().fit;  // with what was measured for it
+  nlohmann::ordered_json settings = to_json(ran);
   settings["tolerance"] = fit.tolerance ? nlohmann::ordered_json(*fit.tolerance) : nullptr;
   ReplayReport report{.frames = fitted.frames(),
                       .timer = fitted.times(),
@@ -143,7 +149,7 @@ std::vector<PosedFrame> refine_held_out(Reconstruction& fitted) {
 void add_held_out(const ReplayOptions& options, Reconstruction& fitted,
                   const CommandContext& context, ReplayReport& report) {
   const std::vector<PosedFrame>& held_out = fitted.frames().held_out;
-  if (held_out.empty()) return;
+  if (held_out.empty() || !options.reconstruction.share.is_whole()) return;
   auto summaries = evaluate_held_out(fitted, held_out, context);
   report.held_out = std::move(summaries[0]);
   report.held_out_mean = std::move(summaries[1]);
@@ -157,20 +163,20 @@ void add_held_out(const ReplayOptions& options, Reconstruction& fitted,
 std::unique_ptr<LiveSession> make_live_session(const ReplayOptions& options, Reconstruction& fitted,
                                                bool is_camera) {
   if (!options.preview) return nullptr;
-  return std::make_unique<LiveSession>(
-      LiveSession::Parts{.model = fitted.model(),
-                         .history = *fitted.history(),
-                         .baseline = fitted.mean_history(),
-                         .mesh = fitted.mesh(),
-                         .camera = fitted.session().camera,
-                         .board_from_object = fitted.session().board_from_object,
-                         .limits = options.reconstruction.limits,
-                         .is_camera = is_camera,
-                         .refuse_faults = options.reconstruction.refuse_mismatches,
-                         .save = [&options, &fitted](const fitting::LightField& light_field) {
-                           fitting::write_model(options.output, fitted.mesh(), light_field);
-                           return "Saved " + options.output.filename().string();
-                         }});
+  return std::make_unique<LiveSession>(LiveSession::Parts{
+      .model = fitted.model(),
+      .history = *fitted.history(),
+      .baseline = fitted.mean_history(),
+      .mesh = fitted.mesh(),
+      .camera = fitted.session().camera,
+      .board_from_object = fitted.session().board_from_object,
+      .limits = options.reconstruction.limits,
+      .is_camera = is_camera,
+      .refuse_faults = options.reconstruction.refuse_mismatches,
+      .save = [&options, &fitted](const fitting::LightField& light_field) {
+        fitting::write_model(options.output, fitted.mesh(), light_field, fitted.frames().seen);
+        return "Saved " + options.output.filename().string();
+      }});
 }
 
 pipeline::ReconstructionOptions completed(const ReplayOptions& options,
@@ -191,19 +197,77 @@ void add_coverage(const Reconstruction& fitted, ReplayReport& report) {
                                                  report.held_out ? &*report.held_out : nullptr);
 }
 
-void run_replay(const ReplayOptions& options, const CommandContext& context) {
+bool is_session(const std::filesystem::path& folder) {
+  std::error_code no_throw;
+  return std::filesystem::exists(folder / "session.json", no_throw);
+}
+
+/// A session of a video or pictures. One that cannot be completed does not stay, so that the same
+/// command can be tried again with more options.
+class NewSession {
+ public:
+  explicit NewSession(const ReplayOptions& options)
+      : folder_(options.new_session.empty()
+                    ? std::filesystem::path(options.output).replace_extension()
+                    : options.new_session) {
+    capture::write_new_session(options.session, folder_);
+  }
+  ~NewSession() {
+    std::error_code no_throw;
+    if (!is_kept_) std::filesystem::remove_all(folder_, no_throw);
+  }
+  NewSession(const NewSession&) = delete;
+  NewSession& operator=(const NewSession&) = delete;
+  NewSession(NewSession&&) = delete;
+  NewSession& operator=(NewSession&&) = delete;
+
+  void keep() { is_kept_ = true; }
+  [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  std::filesystem::path folder_;
+  bool is_kept_ = false;
+};
+
+/// What a walk was lacking: camera, board and mesh, found from its images.
+WalkAnswer complete_session(const ReplayOptions& options, capture::Session& session,
+                            const CommandContext& context) {
+  TerminalSink sink(context);
+  const pipeline::FrameChoice& frames = options.reconstruction.frames;
+  WalkAnswer answer;
+  session = open_walk(options.session, options.walk, frames, sink, answer);
+  for (const std::string& warning : session.warnings) context.note("note: " + warning);
+  if (!session.mesh.empty() || !session.board) return answer;
+  const MeshAnswer mesh = add_measured_mesh(session, frames, sink, context);
+  session = capture::open_session(session.folder);
+  answer.document["mesh"] = mesh.document;
+  answer.text += mesh.text;
+  return answer;
+}
+
+void run_replay(ReplayOptions options, const CommandContext& context) {
   // Open everything that may be wrong before the long work.
   context.check_outputs({options.output, options.mean_output, options.mesh_output,
                          options.state_output, options.poses_output});
   if (options.preview) check_display();
-  const capture::Session session = capture::open_session(options.session);
-  for (const std::string& warning : session.warnings) context.note("note: " + warning);
+  std::optional<NewSession> made;
+  if (!is_session(options.session)) {
+    made.emplace(options);
+    options.session = made->folder();
+  } else if (!options.new_session.empty()) {
+    throw UsageError("--session-out is for a video or pictures, this is a session already");
+  }
+  capture::Session session;
+  const WalkAnswer walk = complete_session(options, session, context);
+  if (made) made->keep();
+  if (!options.note.empty()) context.note(options.note);
   auto frames = capture::open_frames(session, options.reconstruction.frames.start,
                                      options.reconstruction.frames.end);
   if (options.preview) frames = capture::at_recorded_pace(std::move(frames));
 
-  const FitOutcome outcome = fit_session(options, session, std::move(frames), context);
-  context.publish(outcome.document, outcome.text);
+  FitOutcome outcome = fit_session(options, session, std::move(frames), context);
+  if (!walk.document.is_null()) outcome.document["walk"] = walk.document;
+  context.publish(outcome.document, walk.text + outcome.text);
 }
 
 }  // namespace
@@ -220,8 +284,8 @@ FitOutcome fit_session(const ReplayOptions& options, const capture::Session& ses
                          .on_samples = state.listener()},
                         completed(options, context), sink);
   if (!options.state_output.empty()) {
-    state.open(options.state_output,
-               {fitted.options().representation, fitted.options().fit, fitted.mesh()});
+    state.open(options.state_output, {fitted.options().representation, fitted.options().fit,
+                                      fitted.mesh(), fitted.options().share});
   }
   const auto live = make_live_session(options, fitted, camera != nullptr);
   FitOutcome outcome;
@@ -250,10 +314,15 @@ FitOutcome fit_session(const ReplayOptions& options, const capture::Session& ses
 
 void add_replay_command(CommandLine& program, CommandContext& context) {
   auto options = std::make_shared<ReplayOptions>();
-  Command command = program.command("replay", "Turn a recorded session into a light field");
+  Command command = program.command("replay", "Turn a recording into a light field");
   command.example(
-      "Example: fit a session, keep every fifth frame out and report the error on those:\n"
-      "  sheen replay sample_data/glossy -o model.glb --hold-out 5");
+      "Examples:\n"
+      "  sheen replay walk.mp4 -o knot.glb          a walk round an object on the sheet of sheen\n"
+      "                                             board: camera and mesh are found, too, and\n"
+      "                                             kept in the session folder knot\n"
+      "  sheen replay photos -o knot.glb --board board.yaml    on another board\n"
+      "  sheen replay sample_data/glossy -o model.glb --hold-out 5    a session; keep every fifth\n"
+      "                                             frame out and report the error on those");
   add_replay_options(command, *options);
   add_common_options(command, context);
   command.action([options, &context] { run_replay(*options, context); });

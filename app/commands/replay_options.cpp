@@ -3,9 +3,12 @@
 
 #include "app/commands/frame_options.h"
 #include "app/commands/representation_options.h"
+#include "core/text/number.h"
 #include "fitting/descriptor.h"
 
+#include <charconv>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,40 +23,77 @@ const std::vector<std::pair<std::string, VisibilityMethod>> kVisibilities{
     {"raster", VisibilityMethod::raster},
     {"rays", VisibilityMethod::rays},
     {"depth", VisibilityMethod::depth}};
-const std::vector<std::pair<std::string, Patches>> kPatches{
+const std::vector<std::pair<std::string, std::optional<Patches>>> kPatches{
     {"vertex", Patches::vertex}, {"texel", Patches::texel}, {"detail", Patches::detail}};
 constexpr const char* kVertexPatches = "sparse";
 constexpr const char* kTexture = "detail";
 
 template <typename Value>
-std::string word_for(const std::vector<std::pair<std::string, Value>>& words, Value value) {
+std::string word_for(const std::vector<std::pair<std::string, Value>>& words, const Value& value) {
   for (const auto& [word, candidate] : words) {
     if (candidate == value) return word;
   }
   return {};
 }
 
-/// `--patches detail` and the representation of this name mean each other.
-void reconcile_patches(pipeline::ReconstructionOptions& fit) {
-  const bool wants_texture = fit.patches == Patches::detail;
-  if (wants_texture && fit.representation == kVertexPatches) fit.representation = kTexture;
-  const bool has_texture = fit.representation == kTexture;
-  if ((wants_texture && !has_texture) || (has_texture && fit.patches == Patches::texel)) {
-    throw UsageError("--patches " + word_for(kPatches, fit.patches) +
-                     " contradicts --representation " + fit.representation);
+/// Representation and patches from what was said of them. A texture and patches at vertices are one
+/// representation each, so --patches chooses between them where --representation is not given; and
+/// a state holds samples, of which no texture can be made.
+void reconcile_patches(const RepresentationChoice& choice, const std::optional<Patches>& wanted,
+                       ReplayOptions& options) {
+  pipeline::ReconstructionOptions& fit = options.reconstruction;
+  const bool is_free = choice.representation == kTexture && !choice.asked_by_name;
+  const bool for_state = !wanted && !options.state_output.empty();
+  if (is_free && (for_state || (wanted && *wanted != Patches::detail))) {
+    fit.representation = kVertexPatches;
+    static_cast<void>(resolve_representation(fit.representation, fit.fit));
+    if (for_state) options.note = "note: a state holds no texture, so this is --patches vertex";
   }
-  if (has_texture) fit.patches = Patches::detail;
+  const bool has_texture = fit.representation == kTexture;
+  if (wanted && (*wanted == Patches::detail) != has_texture) {
+    throw UsageError("--patches " + word_for(kPatches, wanted) + " contradicts --representation " +
+                     fit.representation);
+  }
+  fit.patches = has_texture ? Patches::detail : wanted.value_or(Patches::vertex);
 }
 
-}  // namespace
+core::PatchShare share_from(const std::string& text) {
+  core::PatchShare share;
+  const char* const end = text.data() + text.size();
+  const auto number = std::from_chars(text.data(), end, share.number);
+  const bool goes_on = number.ec == std::errc() && number.ptr != end && *number.ptr == '/';
+  const auto of = goes_on ? std::from_chars(number.ptr + 1, end, share.of) : number;
+  if (!goes_on || of.ec != std::errc() || of.ptr != end || share.number < 1 ||
+      share.number > share.of) {
+    throw UsageError("--part is \"" + core::quotable(text) + "\", write 1/3, 2/3 and 3/3");
+  }
+  return share;
+}
 
-void add_model_options(Command command, ReplayOptions& options) {
+/// A share is of use to be merged, and what looks at the model while it grows needs all of it.
+void check_share(const ReplayOptions& options) {
+  const pipeline::ReconstructionOptions& fit = options.reconstruction;
+  if (fit.share.is_whole()) return;
+  if (options.state_output.empty()) {
+    throw UsageError("--part needs --state, sheen merge joins the states of all parts");
+  }
+  if (fit.photometric.refine_poses || fit.photometric.exposure || fit.refuse_mismatches) {
+    throw UsageError(
+        "--part excludes --refine-poses, --exposure and --refuse-mismatches: they look at the "
+        "whole model");
+  }
+}
+
+using WantedPatches = std::shared_ptr<std::optional<Patches>>;
+
+void add_model_options(Command command, const WantedPatches& patches, ReplayOptions& options) {
   pipeline::ReconstructionOptions& fit = options.reconstruction;
   const auto choice = std::make_shared<RepresentationChoice>();
   add_representation_options(command, *choice);
-  command.after_parsing([choice, &fit] {
-    fit.representation = choice->representation;
-    fit.fit = choice->values;
+  command.after_parsing([choice, patches, &options] {
+    options.reconstruction.representation = choice->representation;
+    options.reconstruction.fit = choice->values;
+    reconcile_patches(*choice, *patches, options);
   });
   command.choice("--visibility", options.visibility, kVisibilities,
                  "How hidden vertices are found");
@@ -79,21 +119,38 @@ void add_model_options(Command command, ReplayOptions& options) {
       .show_default();
 }
 
+}  // namespace
+
+void add_model_options(Command command, ReplayOptions& options) {
+  add_model_options(command, std::make_shared<std::optional<Patches>>(), options);
+}
+
 void add_replay_options(Command command, ReplayOptions& options) {
   pipeline::ReconstructionOptions& fit = options.reconstruction;
-  command.option("session", options.session, "Session folder").required();
+  command
+      .option("session", options.session,
+              "Session folder, or a video or folder of pictures of a walk round an object on a "
+              "printed board")
+      .required();
   command.option("-o,--output", options.output, "Model to write (.glb)")
       .required()
       .check([](const std::string& path) {
         return path.ends_with(".glb") ? std::string() : path + " does not end in .glb";
       })
       .type("MODEL.glb");
-  add_model_options(command, options);
+  command
+      .option("--session-out", options.new_session,
+              "For a video or pictures: the session folder to make (default: the model's name "
+              "without .glb)")
+      .type("DIR");
+  add_walk_options(command, options.walk);
+  const auto patches = std::make_shared<std::optional<Patches>>();
   command.choice(
-      "--patches", fit.patches, kPatches,
+      "--patches", *patches, kPatches,
       "vertex: one patch per vertex; texel: the mesh is subdivided to the footprint of a "
-      "pixel first; detail: one per vertex and a texture as fine as the images");
-  command.after_parsing([&fit] { reconcile_patches(fit); });
+      "pixel first; detail: one per vertex and a texture as fine as the images (default "
+      "detail; vertex with --state or another --representation)");
+  add_model_options(command, patches, options);
   command.option("--texel-px", fit.texel_px, "With --patches texel: longest edge, pixels")
       .positive()
       .show_default();
@@ -140,6 +197,13 @@ void add_replay_options(Command command, ReplayOptions& options) {
           .type("FILE");
   preview.excludes(state);
   refine_mesh.excludes(state);  // states know the session's mesh
+  command
+      .option(
+          "--part", [&fit](const std::string& text) { fit.share = share_from(text); },
+          "Fit the k-th of n equal shares of the patches alone, 2/3, and leave its samples in "
+          "--state; sheen merge of all n states gives the whole model")
+      .type("K/N");
+  command.after_parsing([&options] { check_share(options); });
   command.option("--poses-out", options.poses_output, "Also save the poses, TUM form").type("FILE");
 }
 
@@ -157,7 +221,7 @@ nlohmann::ordered_json to_json(const ReplayOptions& options) {
                             : value.is_discarded() ? nlohmann::ordered_json(text)
                                                    : value;
   }
-  document.update({{"patches", word_for(kPatches, fit.patches)},
+  document.update({{"patches", word_for(kPatches, std::optional(fit.patches))},
                    {"visibility", word_for(kVisibilities, options.visibility)},
                    {"hold_out", fit.frames.hold_out},
                    {"start", fit.frames.start},

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/survey.h"
 
+#include "app/session_lock.h"
 #include "app/terminal_sink.h"
 #include "capture/calibration/camera_file.h"
 #include "capture/pose/board_change.h"
@@ -113,6 +114,7 @@ void run_survey(SurveyOptions options, const CommandContext& context) {
   if (options.output.empty()) options.output = options.session / "board.surveyed.yaml";
   context.check_outputs({options.output, options.camera_output, options.image});
   capture::Session session = capture::open_session(options.session);
+  const SessionLock lock(options.session, {options.output, options.camera_output});
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
   const auto lens =
       options.camera_output.empty() ? capture::LensRefinement::off : capture::LensRefinement::on;

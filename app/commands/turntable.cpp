@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/turntable.h"
 
+#include "app/commands/smooth_picture.h"
 #include "app/preview/orbit_camera.h"
 #include "app/terminal_sink.h"
 #include "capture/files/video_writer.h"
@@ -12,7 +13,6 @@
 #include "render/renderer.h"
 
 #include <fmt/format.h>
-#include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <charconv>
@@ -20,43 +20,9 @@
 namespace sheen::app {
 namespace {
 
-constexpr int kFiner = 2;  // drawn so much larger, so that outlines become smooth
 constexpr int kLeastSide_px = 16, kMostSide_px = 8192;
 const cv::Scalar kDark(0x22, 0x1e, 0x1c);
 const cv::Scalar kLight(0xf4, 0xf3, 0xf2);
-
-/// A lens that sees all of the object whatever the picture's shape.
-core::CameraModel turntable_lens(const cv::Size& size_px) {
-  const int side = std::min(size_px.width, size_px.height);
-  core::CameraModel::Intrinsics intrinsics = OrbitCamera::lens(side, side).intrinsics();
-  intrinsics.width_px = size_px.width;
-  intrinsics.height_px = size_px.height;
-  intrinsics.principal_px = {0.5 * (size_px.width - 1), 0.5 * (size_px.height - 1)};
-  return core::CameraModel(intrinsics);
-}
-
-/// CV_8UC4, B G R A, not premultiplied.
-cv::Mat with_alpha(const render::RenderedView& view, const cv::Size& size_px) {
-  // Averages of the object's pixels alone: black beside it must not darken the outline.
-  cv::Mat colours;
-  cv::Mat covered;
-  cv::resize(view.image, colours, size_px, 0, 0, cv::INTER_AREA);
-  cv::resize(view.mask, covered, size_px, 0, 0, cv::INTER_AREA);
-  cv::Mat picture(size_px, CV_8UC4, cv::Scalar::all(0));
-  for (int y = 0; y < size_px.height; ++y) {
-    for (int x = 0; x < size_px.width; ++x) {
-      const int alpha = covered.at<std::uint8_t>(y, x);
-      if (alpha == 0) continue;
-      auto& pixel = picture.at<cv::Vec4b>(y, x);
-      for (int channel = 0; channel < 3; ++channel) {
-        const int value = colours.at<cv::Vec3b>(y, x)[channel] * 255 / alpha;
-        pixel[channel] = static_cast<std::uint8_t>(std::min(value, 255));
-      }
-      pixel[3] = static_cast<std::uint8_t>(alpha);
-    }
-  }
-  return picture;
-}
 
 cv::Mat over(const cv::Mat& picture, const cv::Scalar& background) {
   cv::Mat result(picture.size(), CV_8UC3);
@@ -120,14 +86,12 @@ void render_turntable(const std::filesystem::path& path, const std::filesystem::
   const auto renderer = render::make_renderer(*gl, model.mesh, *model.light_field, context.threads);
   const Eigen::Vector3f up = exporters::y_up_from_object(options.up).row(1);
   OrbitCamera camera(model.mesh, up.cast<double>());
-  const core::CameraModel lens = turntable_lens(options.size_px * kFiner);
   std::optional<capture::VideoWriter> video;
   if (to_video) video.emplace(output, options.size_px, options.fps);
 
   TerminalSink sink(context);
   for (int i = 0; i < options.pictures; ++i) {
-    const auto view = renderer->render(lens, camera.camera_from_object());
-    const cv::Mat picture = with_alpha(view, options.size_px);
+    const cv::Mat picture = smooth_picture(*renderer, camera, options.size_px);
     if (video) {
       video->add(over(picture, options.background.value_or(kDark)));
     } else {

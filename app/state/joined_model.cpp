@@ -30,6 +30,7 @@ std::map<std::string, Frames> frames_by_session(const States& states,
                                                 std::span<const fitting::JoinedView> views) {
   std::map<std::string, Frames> sessions;
   for (const fitting::JoinedView& view : views) {
+    if (states[view.state]->header().share.number > 1) continue;  // counted with the first share
     const fitting::StateView& name = states[view.state]->views()[view.view];
     Frames& frames =
         sessions.try_emplace(name.session, Frames{0, name.frame, name.frame}).first->second;
@@ -44,9 +45,11 @@ std::map<std::string, Frames> frames_by_session(const States& states,
 
 void write_joined_model(const States& states, std::span<const fitting::JoinedView> views,
                         const JoinedOutputs& outputs, const CommandContext& context) {
-  nlohmann::ordered_json document{{"views", views.size()}, {"sessions", nlohmann::json::array()}};
+  nlohmann::ordered_json document{{"views", 0}, {"sessions", nlohmann::json::array()}};
+  int whole_views = 0;
   std::string text;
   for (const auto& [name, frames] : frames_by_session(states, views)) {
+    whole_views += frames.count;
     document["sessions"].push_back({{"name", name},
                                     {"views", frames.count},
                                     {"first_frame", frames.first},
@@ -54,6 +57,7 @@ void write_joined_model(const States& states, std::span<const fitting::JoinedVie
     text += fmt::format("{}  {} views, frames {} to {}\n", name, frames.count, frames.first,
                         frames.last);
   }
+  document["views"] = whole_views;
   // The model first: when this ends between the two, the old state still gives both.
   const int count = static_cast<int>(views.size());
   if (!outputs.model.empty()) {

@@ -2,13 +2,13 @@
 #include "capture/board_print/board_pdf.h"
 
 #include "capture/board_print/tag_bitmap.h"
-#include "core/diagnostics/error.h"
-#include "core/files/staged_output.h"
+#include "core/files/write_file.h"
 
 #include <fmt/format.h>
 #include <hpdf.h>
 
 #include <memory>
+#include <new>
 #include <string>
 #include <type_traits>
 
@@ -156,6 +156,15 @@ void draw_words(Page& page, const BoardPlan& plan, std::size_t sheet_number) {
   page.centred_text(plan.design.paper.width_mm / 2, 3.8, words, 2.6);
 }
 
+std::string bytes_of(HPDF_Doc document) {
+  HPDF_SaveToStream(document);
+  std::string bytes(HPDF_GetStreamSize(document), '\0');
+  auto size = static_cast<HPDF_UINT32>(bytes.size());
+  HPDF_ReadFromStream(document, reinterpret_cast<HPDF_BYTE*>(bytes.data()), &size);
+  if (HPDF_GetError(document) != HPDF_OK) throw std::bad_alloc();  // nothing else can fail
+  return bytes;
+}
+
 }  // namespace
 
 void write_board_pdf(const std::filesystem::path& path, const BoardPlan& plan) {
@@ -173,13 +182,7 @@ void write_board_pdf(const std::filesystem::path& path, const BoardPlan& plan) {
     draw_ruler(page, plan.design.paper);
     draw_words(page, plan, i + 1);
   }
-  core::StagedOutput output(path);
-  if (HPDF_SaveToFile(document.get(), output.path().c_str()) != HPDF_OK ||
-      HPDF_GetError(document.get()) != HPDF_OK) {
-    throw core::Error(core::Error::Kind::run_failed, path, "could not be written",
-                      "check free space and permissions");
-  }
-  output.commit();
+  core::write_file(path, bytes_of(document.get()));
 }
 
 }  // namespace sheen::capture

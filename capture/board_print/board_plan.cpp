@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "capture/board_print/board_plan.h"
 
+#include "capture/board_print/default_board.h"
 #include "capture/pose/tag_family.h"
 
 #include <fmt/format.h>
@@ -79,18 +80,17 @@ void BoardDesign::check() const {
   require_range("tag-mm", tag_mm, kSmallestTagMm, kLargestTagMm);
   if (columns) require_range("columns", *columns, 1, kMaxCells);
   if (rows) require_range("rows", *rows, 1, kMaxCells);
-  require_range("first-id", first_id, 0, 1e6);
+  if (first_id) require_range("first-id", *first_id, 0, 1e6);
 }
 
 std::optional<int> BoardPlan::tag_id(int column, int row) const {
   const bool is_inner = column > 0 && column < columns - 1 && row > 0 && row < rows - 1;
-  if (design.full_grid) return design.first_id + row * columns + column;
+  if (design.full_grid) return first_id + row * columns + column;
   if (is_inner) return std::nullopt;
-  if (row == 0) return design.first_id + column;
-  if (row == rows - 1)
-    return design.first_id + columns + std::min(2, columns) * (rows - 2) + column;
+  if (row == 0) return first_id + column;
+  if (row == rows - 1) return first_id + columns + std::min(2, columns) * (rows - 2) + column;
   const int before = columns + std::min(2, columns) * (row - 1);
-  return design.first_id + before + (column == 0 ? 0 : 1);
+  return first_id + before + (column == 0 ? 0 : 1);
 }
 
 BoardPlan plan_board(const BoardDesign& design) {
@@ -105,6 +105,8 @@ BoardPlan plan_board(const BoardDesign& design) {
   }
   BoardPlan plan;
   plan.design = design;
+  const auto sheet = default_sheet_of(design);
+  plan.first_id = design.first_id.value_or(sheet ? sheet->first_id : 0);
   plan.columns = design.columns.value_or(most_columns);
   plan.rows = design.rows.value_or(most_rows);
   plan.pitch_mm = kPitchOfTag * design.tag_mm;

@@ -31,7 +31,8 @@ struct BoardDesign {
   std::optional<int> columns;       ///< of the grid, [1, 60]; none: as many as one sheet holds
   std::optional<int> rows;          ///< likewise
   bool full_grid = false;           ///< tags in the middle too; else round the rim only
-  int first_id = 0;                 ///< id of the first tag, >= 0
+  /// Id of the first tag, >= 0; none: 0, and of a default sheet its own (default_board.h).
+  std::optional<int> first_id;
 
   /// Throws std::invalid_argument naming the option and its allowed values.
   void check() const;
@@ -50,6 +51,7 @@ struct BoardSheet {
 /// no tag lies on two of them.
 struct BoardPlan {
   BoardDesign design;
+  int first_id = 0;
   int columns = 0;
   int rows = 0;
   double pitch_mm = 0;             ///< from tag to tag

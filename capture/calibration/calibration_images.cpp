@@ -34,25 +34,7 @@ bool is_hidden(const fs::path& path) {
 /// Whatever images a folder holds, by name; the size of the first binds the others.
 class ImageFolder : public FrameSource {
  public:
-  explicit ImageFolder(const fs::path& folder) {
-    std::optional<UnreadableKind> other;
-    std::error_code fault;
-    for (fs::directory_iterator entry(folder, fault), last; !fault && entry != last;
-         entry.increment(fault)) {
-      // Macs leave ._IMG_0001.JPG beside IMG_0001.JPG; hidden files are nobody's photographs.
-      if (!entry->is_regular_file(fault) || is_hidden(entry->path())) continue;
-      if (is_image(entry->path())) files_.push_back(entry->path());
-      if (!other) other = unreadable_ending(entry->path());
-    }
-    std::sort(files_.begin(), files_.end());
-    if (files_.empty() && other) {
-      throw core::bad_input(
-          folder, "holds pictures of " + other->name + " only, which are not read", other->remedy);
-    }
-    if (files_.empty()) {
-      throw core::bad_input(folder, "holds no images", "name a folder of .jpg or .png files");
-    }
-  }
+  explicit ImageFolder(const fs::path& folder) : files_(pictures_in(folder)) {}
 
   std::optional<Frame> next() override {
     if (next_ == files_.size()) return std::nullopt;
@@ -80,6 +62,30 @@ std::unique_ptr<FrameSource> open_whole_video(const fs::path& path) {
 }
 
 }  // namespace
+
+std::vector<fs::path> pictures_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::optional<UnreadableKind> other;
+  std::error_code fault;
+  for (fs::directory_iterator entry(folder, fault), last; !fault && entry != last;
+       entry.increment(fault)) {
+    // Macs leave ._IMG_0001.JPG beside IMG_0001.JPG; hidden files are nobody's photographs.
+    if (!entry->is_regular_file(fault) || is_hidden(entry->path())) continue;
+    if (is_image(entry->path())) files.push_back(entry->path());
+    if (!other) other = unreadable_ending(entry->path());
+  }
+  std::sort(files.begin(), files.end());
+  if (files.empty() && other) {
+    throw core::bad_input(folder, "holds pictures of " + other->name + " only, which are not read",
+                          other->remedy);
+  }
+  if (files.empty()) {
+    throw core::bad_input(folder, "holds no images",
+                          "name a folder of .jpg or .png files, or a session folder with its "
+                          "session.json");
+  }
+  return files;
+}
 
 std::unique_ptr<FrameSource> open_calibration_images(const fs::path& source) {
   std::error_code no_throw;

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <vector>
 
 namespace sheen::capture {
 
@@ -12,5 +13,9 @@ namespace sheen::capture {
 /// their names), or a session folder, whose recording is taken. All must be of one size. Throws
 /// core::Error (bad_input) for a source without images.
 std::unique_ptr<FrameSource> open_calibration_images(const std::filesystem::path& source);
+
+/// The pictures that a folder holds, by name, hidden files left out. Throws core::Error (bad_input)
+/// when there is none, naming the kind of those that are not read.
+std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder);
 
 }  // namespace sheen::capture

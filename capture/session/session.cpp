@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "capture/session/session.h"
 
+#include "capture/calibration/calibration_target.h"
 #include "capture/calibration/camera_file.h"
 #include "capture/files/text_file.h"
 #include "capture/session/frame_stamps.h"
+#include "capture/session/new_session.h"
 #include "capture/session/session_file.h"
 #include "capture/source/image_check.h"
 #include "capture/source/image_folder_source.h"
+#include "capture/source/still_reader.h"
 #include "capture/source/video_source.h"
 #include "core/diagnostics/error.h"
 
@@ -193,6 +196,40 @@ void read_object(SessionReader& reader, Session& session) {
   session.board_from_object = read_transform(reader, object);
 }
 
+/// Of the recording's stored images.
+ImageSize image_size(const Session& session) {
+  if (session.video) return stored_video_size(*session.video);
+  const auto name = NumberedName::parse(*session.image_pattern);
+  std::error_code no_throw;
+  const bool begins_at_0 = std::filesystem::exists(session.folder / name->at(0), no_throw);
+  const cv::Mat first =
+      StillReader().read(session.folder / name->at(begins_at_0 ? 0 : 1), std::nullopt);
+  return {first.cols, first.rows};
+}
+
+/// What session.json says of everything but the camera.
+Session read_session(SessionReader& reader, const std::filesystem::path& folder) {
+  check_format(reader);
+  reader.warn_unknown(reader.root(),
+                      {"format", "version", "frames", "camera", "board", "poses", "object"}, "");
+  Session session;
+  session.folder = folder;
+  read_frames(reader, session);
+  session.board = reader.inner_file(reader.root(), "board");
+  session.poses = reader.inner_file(reader.root(), "poses");
+  read_object(reader, session);
+  session.camera_file = reader.inner_file(reader.root(), "camera");
+  if (session.camera_file) session.camera = read_camera(*session.camera_file);
+  session.warnings = std::move(reader.warnings);
+  return session;
+}
+
+void require_folder(const std::filesystem::path& folder) {
+  std::error_code no_throw;
+  if (std::filesystem::is_directory(folder, no_throw)) return;
+  throw core::bad_input(folder, "there is no such session folder", "check the path");
+}
+
 std::unique_ptr<FrameSource> open_images(const Session& session, const FrameRange& range) {
   const ImageSize size{session.camera.width_px(), session.camera.height_px()};
   if (session.video) return open_video(*session.video, size, range, session.fps);
@@ -209,30 +246,25 @@ void Session::take_offset(const Eigen::Vector3d& offset) {
 }
 
 Session open_session(const std::filesystem::path& folder) {
-  std::error_code no_throw;
-  if (!std::filesystem::is_directory(folder, no_throw)) {
-    throw core::bad_input(folder, "there is no such session folder", "check the path");
-  }
+  require_folder(folder);
   SessionReader reader(folder);
-  check_format(reader);
-  reader.warn_unknown(reader.root(),
-                      {"format", "version", "frames", "camera", "board", "poses", "object"}, "");
-
-  Session session;
-  session.folder = folder;
-  read_frames(reader, session);
-  session.board = reader.inner_file(reader.root(), "board");
-  session.poses = reader.inner_file(reader.root(), "poses");
+  Session session = read_session(reader, folder);
   if (!session.board && !session.poses) {
     reader.fail("names neither \"board\" nor \"poses\"",
-                "add the tag board (board.yaml) or the camera poses (poses.txt)");
+                "add the tag board (board.yaml) or the camera poses (poses.txt); sheen mesh finds "
+                "the board where it is the sheet of sheen board");
   }
-  read_object(reader, session);
-  const auto camera = reader.inner_file(reader.root(), "camera");
-  if (!camera) reader.fail("names no \"camera\"");
-  session.camera = read_camera(*camera);
-  session.camera_file = *camera;
-  session.warnings = std::move(reader.warnings);
+  if (!session.camera_file) {
+    reader.fail("names no \"camera\"", "sheen mesh finds the camera from the walk");
+  }
+  return session;
+}
+
+Session open_unfinished_session(const std::filesystem::path& folder) {
+  require_folder(folder);
+  SessionReader reader(folder);
+  Session session = read_session(reader, folder);
+  if (!session.camera_file) session.camera = plain_camera(image_size(session));
   return session;
 }
 

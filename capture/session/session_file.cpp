@@ -47,15 +47,28 @@ void write_session_file(const std::filesystem::path& folder, const SessionFile& 
   put(frames, "images", session.images);
   put(frames, "fps", session.fps);
   put(frames, "stamps", session.stamps);
-  ordered_json document{{"format", "sheen-session"},
-                        {"version", 1},
-                        {"frames", std::move(frames)},
-                        {"camera", session.camera}};
+  ordered_json document{{"format", "sheen-session"}, {"version", 1}, {"frames", std::move(frames)}};
+  if (!session.camera.empty()) document["camera"] = session.camera;
   put(document, "board", session.board);
   put(document, "poses", session.poses);
-  document["object"] = {{"mesh", session.mesh},
-                        {"T_stage_object", transform_json(session.board_from_object)}};
+  if (!session.mesh.empty()) {
+    document["object"] = {{"mesh", session.mesh},
+                          {"T_stage_object", transform_json(session.board_from_object)}};
+  }
   write_json(folder / "session.json", document);
+}
+
+void write_camera_and_board(const std::filesystem::path& session_file,
+                            const std::optional<std::string>& camera,
+                            const std::optional<std::string>& board) {
+  auto session =
+      ordered_json::parse(read_text_file(session_file, kMaxSessionBytes), nullptr, false);
+  if (!session.is_object()) {
+    throw core::bad_input(session_file, "is no JSON object", "see docs/session-format.md");
+  }
+  put(session, "camera", camera);
+  put(session, "board", board);
+  write_json(session_file, session);
 }
 
 void write_object(const std::filesystem::path& from, const std::filesystem::path& to,

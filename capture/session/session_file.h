@@ -20,10 +20,10 @@ struct SessionFile {
   std::optional<std::string> images{};  ///< printf pattern, images/%04d.png
   std::optional<double> fps{};
   std::optional<std::string> stamps{};
-  std::string camera = "camera.yaml";
+  std::string camera = "camera.yaml";  ///< empty: it is not known yet
   std::optional<std::string> board{};
   std::optional<std::string> poses{};
-  std::string mesh = "object.ply";
+  std::string mesh = "object.ply";  ///< empty: there is none yet
   Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();
 };
 
@@ -32,6 +32,12 @@ void copy_into_session(const std::filesystem::path& from, const std::filesystem:
 
 /// Writes `folder`/session.json. Throws core::Error (run_failed).
 void write_session_file(const std::filesystem::path& folder, const SessionFile& session);
+
+/// Names a camera file, a board or both in a session.json; the rest of it stays as it is. Throws
+/// core::Error (bad_input) when it is no JSON object.
+void write_camera_and_board(const std::filesystem::path& session_file,
+                            const std::optional<std::string>& camera,
+                            const std::optional<std::string>& board);
 
 /// Writes the session.json `from` with another object, placed on the board as its file has it;
 /// `mesh` is its path within the folder. Throws core::Error (bad_input) when `from` is no JSON

@@ -7,7 +7,8 @@ namespace sheen::capture {
 namespace {
 
 constexpr std::uint16_t kOrientation = 0x0112, kProfile = 0x8773, kExif = 0x8769,
-                        kInteroperability = 0xA005, kColourSpace = 0xA001, kIndex = 0x0001;
+                        kInteroperability = 0xA005, kColourSpace = 0xA001, kFocal35mm = 0xA405,
+                        kIndex = 0x0001;
 constexpr std::uint16_t kShort = 3;
 
 /// Numbers of a TIFF structure in its byte order; nothing beyond its end.
@@ -78,6 +79,8 @@ ExifFacts read_exif(std::span<const std::uint8_t> tiff) {
   }
   const auto exif = bytes.value(first, kExif);
   if (!exif) return facts;
+  const auto focal = bytes.value(*exif, kFocal35mm);
+  if (focal && *focal > 0 && *focal < 10'000) facts.focal_35mm = static_cast<int>(*focal);
   if (bytes.value(*exif, kColourSpace) == 2U) facts.is_adobe_rgb = true;
   if (const auto interoperability = bytes.value(*exif, kInteroperability)) {
     // "R03" in the four bytes of the entry itself.

@@ -2,14 +2,16 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 namespace sheen::capture {
 
 /// The few EXIF facts that change what a picture means.
 struct ExifFacts {
-  int orientation = 1;        ///< 1 to 8, as TIFF counts
-  bool is_adobe_rgb = false;  ///< interoperability index R03, or colour space 2
+  int orientation = 1;            ///< 1 to 8, as TIFF counts
+  std::optional<int> focal_35mm;  ///< focal length, mm, on 35 mm film with the same diagonal
+  bool is_adobe_rgb = false;      ///< interoperability index R03, or colour space 2
 };
 
 /// Reads a TIFF structure, which EXIF is and TIFF files are. Whatever cannot be read is passed

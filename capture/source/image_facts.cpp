@@ -48,6 +48,7 @@ void take_exif(Bytes tiff, ImageFacts& facts) {
   const ExifFacts exif = read_exif(tiff);
   facts.orientation = orientation_of(exif.orientation);
   facts.is_adobe_rgb = exif.is_adobe_rgb;
+  facts.focal_35mm = exif.focal_35mm;
 }
 
 ImageKind kind_of(Bytes bytes) {

@@ -23,6 +23,7 @@ struct ImageFacts {
   Orientation orientation;            ///< EXIF
   std::vector<std::uint8_t> profile;  ///< ICC profile; empty where there is none
   bool is_adobe_rgb = false;          ///< EXIF says so, as cameras do without a profile
+  std::optional<int> focal_35mm;      ///< EXIF: mm, on 35 mm film with the same diagonal
   std::optional<double> gamma;        ///< of PNG, where nothing else says what its colours are
 };
 

@@ -10,13 +10,13 @@
 #include "capture/synthetic/motion_jpeg_file.h"
 #include "capture/synthetic/render_camera.h"
 #include "capture/synthetic/torus_knot.h"
-#include "core/diagnostics/error.h"
 #include "core/files/staged_output.h"
+#include "core/files/write_file.h"
+#include "core/image/png.h"
 #include "core/mesh/bounds.h"
 #include "core/mesh/read_mesh.h"
 
 #include <Eigen/Geometry>
-#include <opencv2/imgcodecs.hpp>
 
 #include <algorithm>
 #include <array>
@@ -40,11 +40,6 @@ void require_range(const char* option, int value, int low, int high) {
   if (value >= low && value <= high) return;
   throw std::invalid_argument(std::string(option) + ": " + std::to_string(value) + " is not in [" +
                               std::to_string(low) + ", " + std::to_string(high) + "]");
-}
-
-core::Error write_failure(const fs::path& path) {
-  return {core::Error::Kind::run_failed, path, "cannot be written",
-          "check free space and permissions"};
 }
 
 /// Counts images for the caller.
@@ -83,9 +78,10 @@ void write_common(const fs::path& folder, const Scene& scene, const SyntheticOpt
 
 void write_recording(const fs::path& folder, const Scene& scene, const core::CameraModel& camera,
                      const SyntheticOptions& options, Counter& counter) {
-  const CameraPath path(recording_path(options.seed), scene.object_centre(),
-                        scene.object_radius_m());
-  const std::vector<Trajectory::Entry> poses = walk(path, options.frames, false);
+  const bool turns = options.path == PathKind::turntable;
+  const CameraPath path(turns ? turntable_path(0) : recording_path(options.seed),
+                        scene.object_centre(), scene.object_radius_m());
+  const std::vector<Trajectory::Entry> poses = walk(path, options.frames, turns);
   write_common(folder, scene, options, camera,
                {.video = "frames.avi", .fps = kFps, .board = "board.yaml"});
   write_board(folder / "board.yaml", scene.board());
@@ -106,8 +102,9 @@ void write_recording(const fs::path& folder, const Scene& scene, const core::Cam
 
 void write_held_out(const fs::path& folder, const Scene& scene, const core::CameraModel& camera,
                     const SyntheticOptions& options, Counter& counter) {
-  const CameraPath path(held_out_path(options.seed), scene.object_centre(),
-                        scene.object_radius_m());
+  const CameraPath path(options.path == PathKind::turntable ? turntable_path(180.0 / options.frames)
+                                                            : held_out_path(options.seed),
+                        scene.object_centre(), scene.object_radius_m());
   const std::vector<Trajectory::Entry> poses = walk(path, options.held_out, true);
   fs::create_directories(folder / "images");
   write_common(folder, scene, options, camera, {.images = "images/%04d.png", .poses = "poses.txt"});
@@ -121,10 +118,8 @@ void write_held_out(const fs::path& folder, const Scene& scene, const core::Came
     std::array<char, 32> name{};
     std::snprintf(name.data(), name.size(), "%04zu.png", i);
     const fs::path file = folder / "images" / name.data();
-    if (!cv::imwrite(file.string(), develop(exposure.light, kNoNoise, 0),
-                     {cv::IMWRITE_PNG_COMPRESSION, 9})) {
-      throw write_failure(file);
-    }
+    const auto png = core::encode_png(develop(exposure.light, kNoNoise, 0));
+    core::write_file(file, {reinterpret_cast<const char*>(png.data()), png.size()});
     counter.advance();
   }
 }

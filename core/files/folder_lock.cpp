@@ -5,6 +5,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -37,27 +38,46 @@ std::string holder_in(int file) {
   return holder.empty() ? "another process" : holder;
 }
 
-}  // namespace
-
-FolderLock::FolderLock(const std::filesystem::path& folder) {
-  const auto path = folder / ".lock";
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
+int open_file(const std::filesystem::path& path) {
   // No O_TRUNC: the holder's name must stay readable.
-  file_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-  if (file_ < 0) {
-    throw bad_input(folder, std::string("cannot be written (") + std::strerror(errno) + ")",
+  const int file = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+  if (file < 0) {
+    throw bad_input(path.parent_path(),
+                    std::string("cannot be written (") + std::strerror(errno) + ")",
                     "check its permissions or choose another place");
   }
-  if (flock(file_, LOCK_EX | LOCK_NB) != 0) {
-    const bool is_held = errno == EWOULDBLOCK;
-    const std::string fault = is_held
-                                  ? "is in use by " + holder_in(file_)
-                                  : std::string("cannot be locked (") + std::strerror(errno) + ")";
-    close(file_);
-    throw bad_input(folder, fault,
-                    is_held ? "wait for it or end it" : "choose a place whose files can be locked");
-  }
+  return file;
+}
+
+void hold(int file, const std::filesystem::path& folder) {
+  if (flock(file, LOCK_EX | LOCK_NB) == 0) return;
+  const bool is_held = errno == EWOULDBLOCK;
+  const std::string fault = is_held
+                                ? "is in use by " + holder_in(file)
+                                : std::string("cannot be locked (") + std::strerror(errno) + ")";
+  close(file);
+  throw bad_input(folder, fault,
+                  is_held ? "wait for it or end it" : "choose a place whose files can be locked");
+}
+
+bool is_same_file(int file, const std::filesystem::path& path) {
+  struct stat held {};
+  struct stat named {};
+  return fstat(file, &held) == 0 && lstat(path.c_str(), &named) == 0 &&
+         held.st_dev == named.st_dev && held.st_ino == named.st_ino;
+}
+
+}  // namespace
+
+FolderLock::FolderLock(const std::filesystem::path& folder) : path_(folder / ".lock") {
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  // Its last holder may remove the file between these two: then what is held is no lock.
+  do {
+    if (file_ >= 0) close(file_);
+    file_ = open_file(path_);
+    hold(file_, folder);
+  } while (!is_same_file(file_, path_));
   // Only for people: on a full disk the lock holds all the same.
   const std::string holder = this_process() + "\n";
   if (ftruncate(file_, 0) != 0 ||
@@ -67,6 +87,8 @@ FolderLock::FolderLock(const std::filesystem::path& folder) {
 }
 
 FolderLock::~FolderLock() {
+  std::error_code failure;
+  std::filesystem::remove(path_, failure);
   close(file_);
 }
 

@@ -6,8 +6,8 @@
 namespace sheen::core {
 
 /// While one exists no other process writes to the folder that asks for a lock, too: `.lock` in it
-/// is held by flock, which ends with the process however it ends, and names its holder. The file
-/// stays; an unheld one means nothing.
+/// is held by flock, which ends with the process however it ends, and names its holder. One that a
+/// killed process left behind means nothing.
 class FolderLock {
  public:
   /// Creates the folder where it is missing. Throws Error: bad_input when another process holds the
@@ -20,6 +20,7 @@ class FolderLock {
   FolderLock& operator=(FolderLock&&) = delete;
 
  private:
+  std::filesystem::path path_;
   int file_ = -1;
 };
 

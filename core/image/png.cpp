@@ -26,10 +26,10 @@ std::uint32_t big_endian(std::span<const std::byte, 4> bytes) {
 
 }  // namespace
 
-std::vector<std::uint8_t> encode_png(const cv::Mat& image) {
+std::vector<std::uint8_t> encode_png(const cv::Mat& image, int effort) {
   assert(image.type() == CV_8UC3 && !image.empty());
   std::vector<std::uint8_t> bytes;
-  cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, 9});
+  cv::imencode(".png", image, bytes, {cv::IMWRITE_PNG_COMPRESSION, effort});
   return bytes;
 }
 

@@ -5,7 +5,7 @@
 #include "core/files/write_file.h"
 #include "core/text/script_text.h"
 #include "evaluation/comparison/page_text.h"
-#include "evaluation/comparison/run_program.h"
+#include "evaluation/report/chart_script.h"
 
 #include <algorithm>
 #include <fstream>
@@ -18,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Debian's: other Pythons on the PATH may lack matplotlib.
-constexpr const char* kPython = "/usr/bin/python3";
 constexpr const char* kChartLibrary = "/usr/share/javascript/chart.js/chart.min.js";
 
 std::optional<std::string> read_text(const fs::path& path) {
@@ -51,27 +49,6 @@ void write_page(const fs::path& staging, const nlohmann::ordered_json& document,
   core::write_file(staging / "compare.html", page);
 }
 
-void draw_charts(const fs::path& staging, std::vector<std::string>& notes) {
-  const auto messages = staging / "messages.txt";
-  const auto status = run_program({kPython, "-I", "-c", std::string(page_text("charts.py")),
-                                   (staging / "compare.csv").string(), staging.string()},
-                                  messages);
-  const std::string said = read_text(messages).value_or("");
-  fs::remove(messages);
-  if (!status) {
-    notes.emplace_back(
-        "no PNG and SVG charts: /usr/bin/python3 is missing; install "
-        "python3-matplotlib");
-  } else if (*status == 3) {
-    notes.emplace_back("no PNG and SVG charts: matplotlib is missing; install python3-matplotlib");
-  } else if (*status != 0) {
-    const auto end = said.find_last_not_of('\n');
-    const auto begin = said.find_last_of('\n', end);
-    const std::string last_line = said.substr(begin == std::string::npos ? 0 : begin + 1);
-    notes.push_back("no PNG and SVG charts: " + last_line.substr(0, last_line.find('\n')));
-  }
-}
-
 void move_into_place(const fs::path& staging, const fs::path& folder, ComparisonFiles& files) {
   std::vector<fs::path> staged;
   for (const auto& entry : fs::directory_iterator(staging)) staged.push_back(entry.path());
@@ -96,7 +73,10 @@ ComparisonFiles write_comparison(const fs::path& folder, const fs::path& staging
   ComparisonFiles files;
   core::write_file(staging / "compare.csv", csv);
   write_page(staging, document, files.notes);
-  draw_charts(staging, files.notes);
+  if (auto note =
+          draw_charts(std::string(page_text("charts.py")), staging / "compare.csv", staging)) {
+    files.notes.push_back(*std::move(note));
+  }
   move_into_place(staging, folder, files);
   return files;
 }

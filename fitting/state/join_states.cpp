@@ -6,6 +6,9 @@
 #include "fitting/patch_fitter.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <string>
+#include <utility>
 
 namespace sheen::fitting {
 namespace {
@@ -26,6 +29,73 @@ void check_alike(const StateReader& first, const StateReader& other) {
   }
 }
 
+const StateView& name_of(std::span<const std::unique_ptr<StateReader>> states,
+                         const JoinedView& view) {
+  return states[view.state]->views()[view.view];
+}
+
+/// Every view once, in all of its shares; they are sorted.
+void check_complete(std::span<const std::unique_ptr<StateReader>> states,
+                    std::span<const JoinedView> views) {
+  const auto share_of = [&](const JoinedView& view) { return states[view.state]->header().share; };
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const StateReader& state = *states[views[i].state];
+    const StateView& name = name_of(states, views[i]);
+    const core::PatchShare share = share_of(views[i]);
+    const bool goes_on = i > 0 && name_of(states, views[i - 1]) == name;
+    if (goes_on && (share_of(views[i - 1]) == share || share_of(views[i - 1]).of != share.of)) {
+      throw core::bad_input(state.path(),
+                            "holds frame " + std::to_string(name.frame) + " of " + name.session +
+                                ", as does " + states[views[i - 1].state]->path().string(),
+                            "give every recording once, or sheen forget it in one of them");
+    }
+    const bool is_next = share.number == (goes_on ? share_of(views[i - 1]).number + 1 : 1);
+    const bool ends = i + 1 == views.size() || name_of(states, views[i + 1]) != name;
+    if (!is_next || (ends && share.number != share.of)) {
+      const std::uint32_t missing = is_next ? share.number + 1 : share.number - 1;
+      throw core::bad_input(state.path(),
+                            "holds part " + std::to_string(share.number) + " of " +
+                                std::to_string(share.of) + " of frame " +
+                                std::to_string(name.frame) + " of " + name.session + ", part " +
+                                std::to_string(missing) + " is missing",
+                            "give sheen merge the states of all parts at once");
+    }
+  }
+}
+
+void append(const core::SampleBatch& from, core::SampleBatch& to) {
+  const auto add = [](const auto& column, auto& longer) {
+    longer.insert(longer.end(), column.begin(), column.end());
+  };
+  add(from.patch, to.patch);
+  add(from.u, to.u);
+  add(from.v, to.v);
+  add(from.r, to.r);
+  add(from.g, to.g);
+  add(from.b, to.b);
+}
+
+/// Every view with the samples of all its shares, which follow each other in `views`.
+template <typename Action>
+void for_each_whole_view(std::span<const std::unique_ptr<StateReader>> states,
+                         std::span<const JoinedView> views, const ViewsDone& done,
+                         const Action& action) {
+  core::SampleBatch share;
+  core::SampleBatch batch;
+  std::size_t count = 0;
+  for (const JoinedView& view : views) {
+    StateReader& state = *states[view.state];
+    const core::PatchShare part = state.header().share;
+    if (part.number == 1) batch.clear();
+    state.read(view.view, share);
+    append(share, batch);
+    ++count;
+    if (part.number < part.of) continue;
+    action(name_of(states, view), batch);
+    done(count);
+  }
+}
+
 }  // namespace
 
 std::vector<JoinedView> join(std::span<const std::unique_ptr<StateReader>> states) {
@@ -34,32 +104,22 @@ std::vector<JoinedView> join(std::span<const std::unique_ptr<StateReader>> state
   for (std::size_t s = 0; s < states.size(); ++s) {
     for (std::size_t v = 0; v < states[s]->views().size(); ++v) joined.push_back({s, v});
   }
-  const auto key = [&](const JoinedView& view) -> const StateView& {
-    return states[view.state]->views()[view.view];
-  };
-  std::ranges::sort(joined, {}, key);
-  const auto twice = std::ranges::adjacent_find(joined, {}, key);
-  if (twice != joined.end()) {
-    const StateView& view = key(*twice);
-    throw core::bad_input(states[std::next(twice)->state]->path(),
-                          "holds frame " + std::to_string(view.frame) + " of " + view.session +
-                              ", as does " + states[twice->state]->path().string(),
-                          "give every recording once, or sheen forget it in one of them");
-  }
+  std::ranges::sort(joined, {}, [&](const JoinedView& view) {
+    return std::pair(name_of(states, view), states[view.state]->header().share);
+  });
+  check_complete(states, joined);
   return joined;
 }
 
 void write_joined(const std::filesystem::path& path,
                   std::span<const std::unique_ptr<StateReader>> states,
                   std::span<const JoinedView> views, const ViewsDone& done) {
-  StateWriter writer(path, states.front()->header());
-  core::SampleBatch batch;
-  std::size_t count = 0;
-  for (const JoinedView& view : views) {
-    states[view.state]->read(view.view, batch);
-    writer.append(states[view.state]->views()[view.view], batch);
-    done(++count);
-  }
+  StateHeader header = states.front()->header();
+  header.share = {};
+  StateWriter writer(path, header);
+  for_each_whole_view(
+      states, views, done,
+      [&](const StateView& name, const core::SampleBatch& batch) { writer.append(name, batch); });
   writer.commit();
 }
 
@@ -74,14 +134,10 @@ JoinedFit fit_joined(std::span<const std::unique_ptr<StateReader>> states,
                           "is fitted as " + header.representation + ", which takes images",
                           "choose a representation that takes samples");
   }
-  core::SampleBatch batch;
-  std::size_t count = 0;
-  for (const JoinedView& view : views) {
-    states[view.state]->read(view.view, batch);
+  for_each_whole_view(states, views, done, [&](const StateView&, const core::SampleBatch& batch) {
     note_seen(batch, fit.seen);
     patches->integrate(batch);
-    done(++count);
-  }
+  });
   fit.fitter->finish();
   return fit;
 }

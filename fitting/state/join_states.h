@@ -13,7 +13,8 @@
 
 namespace sheen::fitting {
 
-/// A view of one of several states.
+/// A view of one of several states. Where they hold shares of the patches, as many of them as
+/// there are shares, one after the other, are a view.
 struct JoinedView {
   std::size_t state = 0;
   std::size_t view = 0;
@@ -21,7 +22,7 @@ struct JoinedView {
 
 /// Their views in the one order that all states have, whatever the order of `states`: joining is
 /// associative and commutative to the last bit. Throws core::Error (bad_input) when they are not
-/// fitted alike, not over one mesh, or hold a view twice.
+/// fitted alike, not over one mesh, hold a view twice or not all shares of one.
 std::vector<JoinedView> join(std::span<const std::unique_ptr<StateReader>> states);
 
 /// Gets the number of views done.

@@ -3,6 +3,7 @@
 
 #include "core/files/staged_output.h"
 #include "core/mesh/mesh.h"
+#include "core/samples/patch_share.h"
 #include "core/samples/sample_batch.h"
 #include "fitting/option_table.h"
 
@@ -27,7 +28,8 @@ struct StateView {
 struct StateHeader {
   std::string representation;  ///< name of a descriptor
   OptionValues options;
-  core::Mesh mesh;  ///< a patch per vertex
+  core::Mesh mesh;           ///< a patch per vertex
+  core::PatchShare share{};  ///< whose samples the views hold
 };
 
 /// Writes a fit state (docs/states.md): every view's samples, bit for bit, 24 bytes each.
@@ -81,6 +83,7 @@ class StateReader {
   void read_header();
   void read_mesh(std::size_t vertices, std::size_t triangles);
   void check_mesh() const;
+  void check_share() const;
   void read_views();
   void take_samples(std::size_t count, core::SampleBatch& batch);
   void check_samples(const core::SampleBatch& batch) const;

@@ -30,6 +30,7 @@ constexpr int kCoarseWidth_px = 480;
 constexpr int kCoarsePasses = 5;
 constexpr std::size_t kOneViewIn = 32;   // may be wrong in the last pass,
 constexpr std::size_t kOneGuessIn = 6;   // where the stage is guessed
+constexpr float kOutlineBlur_px = 1.5F;  // by which one outline may lie wrong
 constexpr int kCoarseCells = 72;         // along the longest side
 constexpr std::size_t kMostViews = 120;  // of the last pass
 constexpr std::size_t kStageViews = 60;  // that the stage is learned from, at full size
@@ -200,7 +201,8 @@ class Measurement {
     DistanceGrid grid(box, cell, 1);
     carve_hull(views_, work.votes(),
                {.wrong = one_in(kOneViewIn, views_.views.size()),
-                .guesses_wrong = one_in(kOneGuessIn, views_.views.size())},
+                .guesses_wrong = one_in(kOneGuessIn, views_.views.size()),
+                .blur_px = kOutlineBlur_px},
                &coarse.grid, 2.5F * coarse.grid.cell_m(), threads_, grid);
     grid.smooth(kSmoothLimit_cells * cell, kSmoothRounds, threads_);
     return checked(std::move(grid));

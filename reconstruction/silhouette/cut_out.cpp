@@ -15,23 +15,18 @@ namespace {
 
 constexpr float kTrustInGain = 1;
 constexpr float kPriorPerPixel = 0.25F;  // log odds per pixel of distance from the earlier outline
-constexpr float kPriorInside = 2;        // most other views agree there is something on this ray
-constexpr float kPriorGuessed =
-    0.5F;                            // where the stage is guessed: what disproves counts less, too
-constexpr float kPriorOutside = -1;  // weaker: what was lost by mistake may come back
+constexpr float kPriorInside = 1.0F;     // most other views agree there is something on this ray
+constexpr float kPriorOutside = -1;      // weaker: what was lost by mistake may come back
 
 /// Log odds from what was found before.
-cv::Mat prior_of(const cv::Mat& mask, const cv::Mat& source) {
+cv::Mat prior_of(const cv::Mat& mask) {
   cv::Mat inside;
   cv::Mat outside;
   cv::distanceTransform(mask, inside, cv::DIST_L2, cv::DIST_MASK_5);
   cv::distanceTransform(mask == 0, outside, cv::DIST_L2, cv::DIST_MASK_5);
   cv::Mat prior = kPriorPerPixel * (inside - outside);
-  prior = cv::min(cv::max(prior, static_cast<double>(kPriorOutside)),
-                  static_cast<double>(kPriorInside));
-  cv::min(prior, static_cast<double>(kPriorGuessed), inside);
-  inside.copyTo(prior, source == static_cast<double>(TexelSource::inpainted));
-  return prior;
+  return cv::min(cv::max(prior, static_cast<double>(kPriorOutside)),
+                 static_cast<double>(kPriorInside));
 }
 
 /// Gives back to the stage what does not touch where the object was found: a lifted corner of the
@@ -78,8 +73,7 @@ Silhouette cut_out(const LearnedStage& stage, const ViewSet& views, std::size_t 
       predict_background(stage.map, views, view, stage.gains[index], mask, kTrustInGain);
   const Evidence evidence = compare_with_background(view.image, silhouette.background);
   silhouette.labels = mask.empty() ? segment(evidence, {}, {{0, 0}, view.image.size()})
-                                   : segment(evidence, prior_of(mask, silhouette.background.source),
-                                             region_of(mask));
+                                   : segment(evidence, prior_of(mask), region_of(mask));
   if (!mask.empty()) drop_pieces_apart(mask, silhouette.labels);
   silhouette.distance = detail == OutlineDetail::pixels
                             ? silhouette_distance(silhouette.labels)

@@ -59,7 +59,7 @@ Evidence compare_with_background(const cv::Mat& image, const Background& backgro
           odds[x] = 0;
           break;
         case TexelSource::inpainted:
-          odds[x] = std::clamp(d[x] - kEvenGuessed, -1.0F, 3.0F);
+          odds[x] = std::clamp(d[x] - kEvenGuessed, -0.5F, 3.0F);
           break;
         case TexelSource::seen:
           odds[x] = std::clamp(d[x] - kEven, -3.0F, 6.0F);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "reconstruction/stage/learn_stage.h"
 
+#include "reconstruction/stage/hidden_paper.h"
 #include "reconstruction/stage/print_check.h"
 
 namespace sheen::reconstruction {
@@ -20,7 +21,9 @@ LearnedStage learn_stage(const capture::Board& board, const ViewSet& views, cons
   stage.gains = estimate_gains(views, stage.map, masks, threads);
   stage.map = learn_stage_map(views, stage.gains, grid, learning, threads);
   refuse_what_is_no_print(board, stage.map);
-  if (!masks.empty()) inpaint_hidden_paper(board, stage.map);
+  if (masks.empty()) return stage;
+  inpaint_hidden_paper(board, stage.map);
+  learn_hidden_paper(board, views, stage.gains, stage.map, threads);
   return stage;
 }
 

@@ -58,7 +58,7 @@ cv::Vec3f shares_of(const cv::Vec3f& bgr) {
 }
 
 /// Colour of the paper: medians over what is seen between the tags.
-std::optional<cv::Vec3f> paper_colour(const StageMap& map, const cv::Mat& between) {
+std::optional<cv::Vec3f> paper_colour_within(const StageMap& map, const cv::Mat& between) {
   constexpr std::size_t fewest = 50;
   std::array<std::vector<double>, 3> values;
   for (int y = 0; y < map.colour.rows; ++y) {
@@ -98,10 +98,15 @@ Eigen::AlignedBox2f tags_region(const capture::Board& board) {
   return box;
 }
 
+std::optional<cv::Vec3f> paper_colour(const capture::Board& board, const StageMap& map) {
+  return paper_colour_within(map,
+                             region_mask(board, map.grid) & ~tag_squares(board, map.grid, 1.1));
+}
+
 void refuse_what_is_no_print(const capture::Board& board, StageMap& map) {
   const cv::Mat between =
       region_mask(board, map.grid) & ~tag_squares(board, map.grid, kTagWithMargin);
-  const auto paper = paper_colour(map, between);
+  const auto paper = paper_colour_within(map, between);
   if (!paper) return;
   cv::Mat refused(map.grid.size, CV_8UC1, cv::Scalar(0));
   for (int y = 0; y < between.rows; ++y) {
@@ -119,7 +124,7 @@ void refuse_what_is_no_print(const capture::Board& board, StageMap& map) {
 
 void inpaint_hidden_paper(const capture::Board& board, StageMap& map) {
   const cv::Mat region = region_mask(board, map.grid);
-  const auto paper = paper_colour(map, region & ~tag_squares(board, map.grid, 1.1));
+  const auto paper = paper_colour(board, map);
   if (!paper) return;
 
   // Spread the paper's colours into what is hidden, from fine to coarse.

@@ -6,10 +6,15 @@
 
 #include <Eigen/Geometry>
 
+#include <optional>
+
 namespace sheen::reconstruction {
 
 /// The rectangle that holds the board's tags, board frame, metres.
 Eigen::AlignedBox2f tags_region(const capture::Board& board);
+
+/// Colour of the board's paper in the open, BGR, [0, 1]; nothing where too little is seen.
+std::optional<cv::Vec3f> paper_colour(const capture::Board& board, const StageMap& map);
 
 /// Forgets texels that cannot be the board's print: between the tags there is paper, of even colour
 /// whatever its light. An object that hides a place from most views would else pass for it (study,

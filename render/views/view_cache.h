@@ -32,6 +32,11 @@ class ViewCache {
     return held_.front().second;
   }
 
+  void clear() {
+    held_.clear();
+    bytes_ = 0;
+  }
+
   /// Of all values held.
   [[nodiscard]] std::size_t byte_size() const { return bytes_; }
   [[nodiscard]] std::size_t size() const { return held_.size(); }

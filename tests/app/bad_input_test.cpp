@@ -161,7 +161,6 @@ TEST_F(BadInput, ReportThatCannotBeWrittenIsToldBeforeTheWork) {
 TEST_F(BadInput, WrongArguments) {
   expect_one_line(run_sheen({"replay"}), "session");
   expect_one_line(run_sheen({"fly"}), "fly");
-  expect_one_line(run_sheen({}), "subcommand is required");
   expect_one_line(run_sheen({"replay", session_, "-o", model_, "--centers", "17"}), "--centers");
   expect_one_line(run_sheen({"replay", session_, "-o", model_, "--fitter", "best"}), "--fitter");
   expect_one_line(run_sheen({"replay", session_, "-o", model_, "--hold-out", "1"}), "2 or more");

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 // `sheen mesh` on the sample session, whose shape is known.
+#include "core/files/folder_lock.h"
 #include "core/mesh/bounds.h"
 #include "core/mesh/read_mesh.h"
 #include "tests/app/copied_session.h"
+
+#include <unistd.h>
 
 namespace sheen::tests {
 namespace {
@@ -21,10 +24,33 @@ TEST_F(MeshCommand, LeavesAMeshThatIsThere) {
   EXPECT_EQ(read_file(session_ / "object.ply"), before);
 }
 
+TEST_F(MeshCommand, WhoeverWritesIntoASessionHasItAlone) {
+  const std::string before = read_file(session_ / "session.json");
+  {
+    const core::FolderLock lock(session_);
+    const std::string holder = "is in use by process " + std::to_string(getpid()) + " on ";
+    for (const std::string command : {"mesh", "register", "survey"}) {
+      std::vector<std::string> words{command, session_, "--quiet", "--end", "12"};
+      if (command == "mesh") words.push_back("--force");
+      const ProgramRun run = run_sheen(words);
+      EXPECT_EQ(run.exit_code, 2) << command;
+      EXPECT_NE(run.standard_error.find(holder), std::string::npos) << run.standard_error;
+    }
+    // To look at it is nobody's exclusive right, nor to write elsewhere.
+    const ProgramRun beside = run_sheen(
+        {"survey", session_, "--quiet", "--end", "12", "-o", folder_.path() / "board.yaml"});
+    EXPECT_EQ(beside.exit_code, 0) << beside.standard_error;
+  }
+  EXPECT_EQ(read_file(session_ / "session.json"), before);
+  EXPECT_FALSE(std::filesystem::exists(session_ / ".lock"));
+  EXPECT_EQ(run_sheen({"survey", session_, "--quiet", "--end", "12"}).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(session_ / ".lock"));
+}
+
 TEST_F(MeshCommand, MakesASessionWithoutAMeshOneThatReplays) {
   replace("session.json", R"(,\s*"object": \{[^}]*\})", "");
   std::filesystem::remove(session_ / "object.ply");
-  const ProgramRun without = run_sheen({"replay", session_, "-o", model_});
+  const ProgramRun without = run_sheen({"survey", session_});
   EXPECT_EQ(without.exit_code, 2);
   EXPECT_NE(without.standard_error.find("has no mesh of its object yet; make one: sheen mesh"),
             std::string::npos)

@@ -62,6 +62,18 @@ TEST_P(EveryFit, ResumeMergeAndForgetGiveTheBytesOfOneRun) {
   EXPECT_TRUE(bytes("merged.glb") == bytes("whole.glb"));
   EXPECT_TRUE(bytes("merged.state") == bytes("whole.state"));
 
+  // In shares of the patches; those of one frame in any order.
+  auto part = fit;
+  part.insert(part.end(), {"--part", "1/3"});
+  std::vector<std::string> words{"merge", "-o", path("parted.glb"), "--quiet"};
+  for (const std::string number : {"2", "3", "1"}) {
+    part.back() = number + "/3";
+    expect_done(replay("part" + number, "0", "24", part));
+    words.push_back(path("part" + number + ".state"));
+  }
+  expect_done(run_sheen(words));
+  EXPECT_TRUE(bytes("parted.glb") == bytes("whole.glb"));
+
   // Gone on with; the state is replaced.
   fs::copy_file(path("first.state"), path("growing.state"));
   expect_done(run_sheen({"resume", path("growing.state"), session_, "-o", path("resumed.glb"),
@@ -117,6 +129,13 @@ TEST_F(OneFit, RefusesWhatCannotBeJoined) {
   expect_refused({"replay", session_, "-o", model, "--patches", "detail", "--end", "6", "--state",
                   path("detail.state"), "--quiet"},
                  "images");
+  expect_refused({"replay", session_, "-o", model, "--part", "1/2", "--end", "6", "--quiet"},
+                 "--state");
+  for (const std::string part : {"0/2", "3/2", "1", "1/", "/2", "1/2/3", "x", "-1/2"}) {
+    expect_refused({"replay", session_, "-o", model, "--end", "6", "--state", path("part.state"),
+                    "--part=" + part, "--quiet"},
+                   "1/3, 2/3 and 3/3");
+  }
   EXPECT_FALSE(fs::exists(model));
 }
 

@@ -41,9 +41,19 @@ std::string bytes_of(const core::Mesh& mesh, const LightField& light_field) {
   return tests::read_file(folder / "model.glb");
 }
 
+/// Makes a fit cheap where it could be large: what is checked does not depend on sizes.
+OptionValues small_options(const Descriptor& one) {
+  const OptionValues small{{"directions", "20"}, {"billboard-size", "64"}, {"texture-side", "128"}};
+  OptionValues values;
+  for (const FitOption& option : one.default_options()->table()) {
+    if (const auto found = small.find(option.name); found != small.end()) values.insert(*found);
+  }
+  return values;
+}
+
 std::unique_ptr<Fitter> fitted(const Descriptor& one, const Photographs& photographs,
                                const std::vector<int>& views, int threads = 1) {
-  auto fitter = make_fitter(one.name, photographs.mesh(), {}, threads);
+  auto fitter = make_fitter(one.name, photographs.mesh(), small_options(one), threads);
   photographs.show(views, *fitter);
   fitter->finish();
   return fitter;
@@ -59,7 +69,7 @@ TEST_P(Representation, ConstantColourStaysThatColour) {
   const cv::Mat image(photographs.views()[0].image.size(), CV_8UC3, cv::Scalar(204, 102, 51));
   pipeline::ViewObserver observer(photographs.mesh(),
                                   core::make_raster_visibility(photographs.mesh(), 1), {}, 1);
-  const auto fitter = make_fitter(GetParam()->name, photographs.mesh());
+  const auto fitter = make_fitter(GetParam()->name, photographs.mesh(), small_options(*GetParam()));
   for (const int i : kAllViews) {
     const auto& pose = photographs.views()[static_cast<std::size_t>(i)].camera_from_object;
     fitter->integrate(observer.observe(i, image, photographs.camera(), pose));
@@ -136,10 +146,11 @@ TEST_P(Representation, FewViewsAndNoneGiveNumbers) {
 
 TEST_P(Representation, UndoEqualsAFitThatNeverSawTheViews) {
   const auto photographs = photographs_of(glossy);
-  UndoableFitter undoable([&] { return make_fitter(GetParam()->name, photographs.mesh()); },
-                          [&](std::span<const int> frames, const auto& observe) {
-                            photographs.observe({frames.begin(), frames.end()}, observe);
-                          });
+  UndoableFitter undoable(
+      [&] { return make_fitter(GetParam()->name, photographs.mesh(), small_options(*GetParam())); },
+      [&](std::span<const int> frames, const auto& observe) {
+        photographs.observe({frames.begin(), frames.end()}, observe);
+      });
   photographs.show(kAllViews, undoable);
   undoable.undo(3, [](const core::SampleBatch&, const LightField&) {});
   undoable.finish();

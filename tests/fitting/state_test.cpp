@@ -34,10 +34,13 @@ class FitState : public ::testing::Test {
   using States = std::vector<std::unique_ptr<StateReader>>;
 
   /// A state of frames [first, last) of a session, whose samples follow from the name alone.
-  fs::path make(const std::string& name, const std::string& session, int first, int last) {
-    StateWriter writer(folder_ / name, {representation_, {}, points(kPatches)});
+  fs::path make(const std::string& name, const std::string& session, int first, int last,
+                core::PatchShare share = {}) {
+    StateWriter writer(folder_ / name, {representation_, {}, points(kPatches), share});
     for (int frame = first; frame < last; ++frame) {
-      writer.append({session, 7, frame}, view(session, frame));
+      core::SampleBatch batch = view(session, frame);
+      share.keep(kPatches, batch);
+      writer.append({session, 7, frame}, batch);
     }
     writer.commit();
     return folder_ / name;
@@ -79,6 +82,36 @@ TEST_F(FitState, JoiningIsAssociativeAndCommutative) {
   EXPECT_EQ(tests::read_file(merge("other", {merge("ca", {c, a}), b})), once);
   // Frames that interleave, too: the parts of one state.
   EXPECT_EQ(tests::read_file(merge("ba", {b, a})), tests::read_file(make("ab2", "walk", 0, 9)));
+}
+
+TEST_F(FitState, SharesOfThePatchesJoinToTheWhole) {
+  const auto whole = make("whole", "walk", 0, 4);
+  for (const std::uint32_t of : {2U, 3U, 40U}) {
+    std::vector<fs::path> parts;
+    for (std::uint32_t number = of; number >= 1; --number) {
+      parts.push_back(make("part" + std::to_string(number), "walk", 0, 4, {number, of}));
+    }
+    EXPECT_EQ(tests::read_file(merge("merged", parts)), tests::read_file(whole)) << of;
+  }
+  // Beside a whole walk.
+  const auto other = make("other", "another", 0, 2);
+  EXPECT_EQ(tests::read_file(merge(
+                "a", {make("1", "walk", 0, 4, {1, 2}), other, make("2", "walk", 0, 4, {2, 2})})),
+            tests::read_file(merge("b", {whole, other})));
+}
+
+TEST_F(FitState, RefusesSharesThatAreNoWhole) {
+  const auto first = make("1", "walk", 0, 4, {1, 3});
+  const auto second = make("2", "walk", 0, 4, {2, 3});
+  const auto last = make("3", "walk", 0, 4, {3, 3});
+  EXPECT_THROW(merge("m", {first, second}), core::Error);
+  EXPECT_THROW(merge("m", {first, last}), core::Error);
+  EXPECT_THROW(merge("m", {second, last}), core::Error);
+  EXPECT_THROW(merge("m", {last}), core::Error);
+  EXPECT_THROW(merge("m", {first, second, second, last}), core::Error);
+  EXPECT_THROW(merge("m", {first, second, make("4", "walk", 0, 4, {2, 2})}), core::Error);
+  EXPECT_THROW(merge("m", {first, second, make("4", "walk", 0, 3, {3, 3})}), core::Error);
+  EXPECT_FALSE(fs::exists(folder_ / "m"));
 }
 
 TEST_F(FitState, ForgettingUndoesJoining) {

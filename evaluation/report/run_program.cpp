@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "evaluation/comparison/run_program.h"
+#include "evaluation/report/run_program.h"
 
 #include <fcntl.h>
 #include <spawn.h>
