@@ -330,9 +330,11 @@ def check_texture(folder, name):
         + down * ((1 - right) * image[top + 1, left] + right * image[top + 1, left + 1])
     data = (folder / "mesh.ply").read_bytes().split(b"end_header\n", 1)
     count = int(data[0].split(b"element vertex ")[1].split()[0])
-    vertex = np.frombuffer(data[1], np.dtype([("p", "<f4", 6), ("c", "u1", 3)]), count)
+    vertex = np.frombuffer(data[1], np.dtype([("p", "<f4", 6), ("c", "u1", 3), ("confidence", "<f4"), ("seen", "<u2", 4)]), count)
     used = np.unique(numbers(document["meshes"][0]["primitives"][0]["indices"]))
     used = used[used < count]
+    assert np.array_equal(numbers(attributes["_CONFIDENCE"])[:count, 0], vertex["confidence"])
+    assert np.array_equal(numbers(attributes["_SEEN"])[:count], vertex["seen"]) and vertex["seen"].any()
     difference = np.abs(read[used] - vertex["c"][used])
     print(f"  {name}: texture at the vertices within {difference.mean():.2f} of 255 on average, worst {difference.max():.0f}")
     assert difference.mean() < 1.5 and np.quantile(difference, 0.99) < 30, difference.mean()
@@ -351,8 +353,8 @@ def check_model(sheen, repository, patches, folder):
         views = report["cost"]["on_views"]
         size = sum(file["bytes"] for file in report["files"])
         print(f"  {name:<17}{size:>9} bytes, {views['converted_db']:.2f} dB on views, the model {views['model_db']:.2f}")
-    _, numbers = read_glb(folder / "mesh.glb")
-    triangles = read_glb(folder / "mesh.glb")[0]["accessors"][3]["count"] // 3
+    document, numbers = read_glb(folder / "mesh.glb")
+    triangles = len(numbers(document["meshes"][0]["primitives"][0]["indices"])) // 3
     check_texture(folder, patches)
     splats = check_splats(folder)
     check_splat_pictures(sheen, sample / "held_out", read_splat_ply(folder / FILES[4]), folder)
