@@ -60,8 +60,8 @@ class EigenFitter final : public Fitter {
     model_.set_vertex_means(vertex_means_.means());
     std::vector<SeenTexel> seen = reader_.read(observation);
     for (const SeenTexel& texel : seen) {
-      means_[texel.slot].add({static_cast<float>(texel.rgb[0]), static_cast<float>(texel.rgb[1]),
-                              static_cast<float>(texel.rgb[2])},
+      means_[texel.slot].add({1.0f, static_cast<float>(texel.rgb[0]),
+                              static_cast<float>(texel.rgb[1]), static_cast<float>(texel.rgb[2])},
                              texel.squared_cosine());
       store_mean(texel.slot);
     }
