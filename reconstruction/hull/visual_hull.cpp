@@ -79,7 +79,7 @@ void carve_hull(const ViewSet& views, const std::vector<OutlineVote>& outlines,
           continue;
         }
       }
-      grid[i] = std::max(vote(views, outlines, votes, point), -point.z());
+      grid[i] = vote(views, outlines, votes, point);
     }
   });
 }

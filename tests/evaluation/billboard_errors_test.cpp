@@ -48,7 +48,7 @@ TEST(BillboardErrors, HaveALeastInBetweenWithHardOutlines) {
 
 // Antialiased, only the parallax is left: the error of orthographic frames falls, and totals do.
 TEST(BillboardErrors, FallWithDistanceWhenAntialiased) {
-  const auto errors = errors_of({64, 2}, 60, 0);
+  const auto errors = errors_of({64, 4}, 60, 0);
   for (std::size_t i = 2; kDistances[i] <= 16; ++i) {
     EXPECT_LT(errors.average[i], errors.average[i - 1]) << kDistances[i];
   }
