@@ -87,14 +87,14 @@ ReplayReport describe(const ReplayOptions& options, const Reconstruction& fitted
   const fitting::LightField& light_field = fitted.light_field();
   const fitting::FitStatistics fit = fitted.fit_statistics();
   ReplayOptions ran = options;
-  ran.reconstruction.fit = fitted.options().fit;  // with what was measured for it
+  ran.reconstruction = fitted.options();  // with what was measured and chosen
   nlohmann::ordered_json settings = to_json(ran);
   settings["tolerance"] = fit.tolerance ? nlohmann::ordered_json(*fit.tolerance) : nullptr;
   ReplayReport report{.frames = fitted.frames(),
                       .timer = fitted.times(),
                       .fit = fit,
                       .finish_ms = fitted.finish_cpu_ms(),
-                      .representation = options.reconstruction.representation,
+                      .representation = ran.reconstruction.representation,
                       .coefficients = light_field.coefficient_count(),
                       .model_bytes = std::filesystem::file_size(options.output),
                       .board = fitted.board_refinement(),

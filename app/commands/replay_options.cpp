@@ -24,7 +24,10 @@ const std::vector<std::pair<std::string, VisibilityMethod>> kVisibilities{
     {"rays", VisibilityMethod::rays},
     {"depth", VisibilityMethod::depth}};
 const std::vector<std::pair<std::string, std::optional<Patches>>> kPatches{
-    {"vertex", Patches::vertex}, {"texel", Patches::texel}, {"detail", Patches::detail}};
+    {"auto", Patches::automatic},
+    {"vertex", Patches::vertex},
+    {"texel", Patches::texel},
+    {"detail", Patches::detail}};
 constexpr const char* kVertexPatches = "sparse";
 constexpr const char* kTexture = "detail";
 
@@ -43,18 +46,23 @@ void reconcile_patches(const RepresentationChoice& choice, const std::optional<P
                        ReplayOptions& options) {
   pipeline::ReconstructionOptions& fit = options.reconstruction;
   const bool is_free = choice.representation == kTexture && !choice.asked_by_name;
-  const bool for_state = !wanted && !options.state_output.empty();
-  if (is_free && (for_state || (wanted && *wanted != Patches::detail))) {
+  const Patches patches = wanted.value_or(Patches::automatic);
+  const bool for_state = patches == Patches::automatic && !options.state_output.empty();
+  if (is_free && (for_state || patches == Patches::vertex || patches == Patches::texel)) {
     fit.representation = kVertexPatches;
     static_cast<void>(resolve_representation(fit.representation, fit.fit));
     if (for_state) options.note = "note: a state holds no texture, so this is --patches vertex";
   }
   const bool has_texture = fit.representation == kTexture;
-  if (wanted && (*wanted == Patches::detail) != has_texture) {
-    throw UsageError("--patches " + word_for(kPatches, wanted) + " contradicts --representation " +
-                     fit.representation);
+  const bool agree = patches == Patches::automatic || (patches == Patches::detail) == has_texture;
+  if (!agree) {
+    throw UsageError("--patches " + word_for(kPatches, std::optional(patches)) +
+                     " contradicts --representation " + fit.representation);
   }
-  fit.patches = has_texture ? Patches::detail : wanted.value_or(Patches::vertex);
+  fit.patches = patches != Patches::automatic ? patches
+                : !has_texture                ? Patches::vertex
+                : is_free                     ? Patches::automatic
+                                              : Patches::detail;
 }
 
 core::PatchShare share_from(const std::string& text) {
@@ -148,8 +156,8 @@ void add_replay_options(Command command, ReplayOptions& options) {
   command.choice(
       "--patches", *patches, kPatches,
       "vertex: one patch per vertex; texel: the mesh is subdivided to the footprint of a "
-      "pixel first; detail: one per vertex and a texture as fine as the images (default "
-      "detail; vertex with --state or another --representation)");
+      "pixel first; detail: one per vertex and a texture as fine as the images; auto: detail, but "
+      "vertex where the vertices lie as densely as pixels, or with --state (default auto)");
   add_model_options(command, patches, options);
   command.option("--texel-px", fit.texel_px, "With --patches texel: longest edge, pixels")
       .positive()
