@@ -111,9 +111,8 @@ void ViewSphere::join_in_a_ring() {
   for (std::size_t i = 0; i < order.size(); ++i) {
     const std::uint32_t here = order[i], next = order[(i + 1) % order.size()];
     const double turn = angle[next] - angle[here] + (i + 1 == order.size() ? 2 * M_PI : 0);
-    if (turn < M_PI) borders_.push_back({here, next});
+    borders_.push_back({here, turn < M_PI ? next : here});
   }
-  if (borders_.empty()) borders_.push_back({order.front(), order.front()});
 }
 
 SphereBlend ViewSphere::blend(const Eigen::Vector3d& direction) const {

@@ -2,8 +2,8 @@
 #include "fitting/eigen_texture/batch_fit.h"
 
 #include "core/concurrency/parallel_for.h"
+#include "fitting/eigen_texture/deviation.h"
 #include "fitting/eigen_texture/factors.h"
-#include "fitting/eigen_texture/luma_chroma.h"
 #include "fitting/eigen_texture/stored_channel.h"
 
 #include <algorithm>
@@ -18,17 +18,8 @@ using Eigen::VectorXf;
 using Views = std::span<const std::vector<SeenTexel>>;
 using Means = std::span<const Texel>;
 
-/// Texels from which coefficients are found: their noise counts for sqrt(bases / seen texels).
-constexpr std::size_t kSampledTexels = 4096;
 /// Texels regressed at once.
 constexpr std::size_t kBlock = 1024;
-
-LumaChroma deviation(const SeenTexel& seen, const Texel& mean) {
-  const auto channel = [&](std::size_t c) {
-    return static_cast<float>(seen.rgb[c]) - static_cast<float>(mean[c]);
-  };
-  return luma_chroma(channel(0), channel(1), channel(2));
-}
 
 /// Those of the texels whose slot is a multiple of `step`.
 std::array<Deviations, 3> sampled_deviations(Views views, Means mean, std::size_t step) {
@@ -42,7 +33,7 @@ std::array<Deviations, 3> sampled_deviations(Views views, Means mean, std::size_
     for (const SeenTexel& seen : views[static_cast<std::size_t>(v)]) {
       if (seen.slot % step != 0) continue;
       const auto row = static_cast<Index>(seen.slot / step);
-      const LumaChroma value = deviation(seen, mean[seen.slot]);
+      const LumaChroma value = deviation(seen.rgb, mean[seen.slot]);
       for (std::size_t channel = 0; channel < 3; ++channel) {
         channels[channel].value(row, v) = value[channel];
         channels[channel].weight(row, v) = seen.squared_cosine();
@@ -68,7 +59,7 @@ std::vector<TexelHistory> histories(Views views, Means mean, std::size_t begin, 
       TexelHistory& texel = texels[seen->slot - begin];
       texel.view.push_back(static_cast<std::uint32_t>(v));
       texel.weight.push_back(seen->squared_cosine());
-      const LumaChroma value = deviation(*seen, mean[seen->slot]);
+      const LumaChroma value = deviation(seen->rgb, mean[seen->slot]);
       for (std::size_t channel = 0; channel < 3; ++channel) {
         texel.value[channel].push_back(value[channel]);
       }
@@ -98,7 +89,7 @@ void regress_block(const std::vector<TexelHistory>& texels, std::size_t channel,
 std::array<Channel, 3> fit_bases(Views views, Means mean, std::size_t bases, int threads) {
   if (views.empty() || mean.empty() || bases == 0) return {};
   // Coefficients from a sample of the texels.
-  const std::size_t step = std::max<std::size_t>(1, mean.size() / kSampledTexels);
+  const std::size_t step = sampling_step(mean.size());
   const auto deviations = sampled_deviations(views, mean, step);
   const auto most = static_cast<Index>(std::min(bases, views.size()));
   std::array<Factors, 3> channels;

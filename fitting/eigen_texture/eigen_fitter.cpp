@@ -5,6 +5,7 @@
 #include "fitting/detail/weighted_mean.h"
 #include "fitting/eigen_texture/batch_fit.h"
 #include "fitting/eigen_texture/eigen_texture.h"
+#include "fitting/eigen_texture/incremental_fit.h"
 #include "fitting/eigen_texture/texel_reader.h"
 #include "fitting/kept_views/mean_keeper.h"
 
@@ -12,10 +13,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 namespace sheen::fitting::eigen_texture {
 namespace {
 
+/// An update costs about the same for one view and for a few.
+constexpr std::size_t kViewsAtOnce = 8;
 /// Part of an atlas that charts fill, about.
 constexpr float kFilled = 0.6f;
 
@@ -44,7 +49,11 @@ class EigenFitter final : public Fitter {
         vertex_means_(mesh, threads),
         model_(mesh, atlas_of(mesh, options)),
         reader_(mesh, model_.mean().atlas(), threads),
-        means_(reader_.used().size()) {}
+        means_(reader_.used().size()) {
+    if (options.solve == Solve::incremental) {
+      incremental_.emplace(reader_.used().size(), static_cast<std::size_t>(options.bases), threads);
+    }
+  }
 
   const ModelUpdate& integrate(const core::Observation& observation) override {
     vertex_means_.integrate(observation);
@@ -58,6 +67,7 @@ class EigenFitter final : public Fitter {
     }
     directions_.push_back(model_.direction_to(core::eye_in_object(observation.camera_from_object)));
     views_.push_back(std::move(seen));
+    if (incremental_ && views_.size() == kViewsAtOnce) grow();
     update_.elements = {0};
     return update_;
   }
@@ -78,6 +88,19 @@ class EigenFitter final : public Fitter {
   [[nodiscard]] FitStatistics statistics() const override { return vertex_means_.statistics(); }
 
  private:
+  [[nodiscard]] std::vector<Texel> used_means() const {
+    std::vector<Texel> means;
+    for (const std::uint32_t texel : reader_.used()) means.push_back(model_.mean().texels()[texel]);
+    return means;
+  }
+
+  /// Takes the views that wait into the bases.
+  void grow() {
+    incremental_->add(views_, used_means());
+    views_.clear();
+    model_.set_bases(incremental_->channels(), directions_);
+  }
+
   void store_mean(std::size_t slot) {
     Texel& texel = model_.mean().texels()[reader_.used()[slot]];
     if (means_[slot].weight == 0) return;
@@ -116,7 +139,8 @@ class EigenFitter final : public Fitter {
   EigenTexture model_;
   TexelReader reader_;
   std::vector<detail::WeightedMean> means_;
-  std::vector<std::vector<SeenTexel>> views_;
+  std::optional<IncrementalFit> incremental_;
+  std::vector<std::vector<SeenTexel>> views_;  ///< all, or those that wait for the incremental fit
   std::vector<Eigen::Vector3f> directions_;
   ModelUpdate update_;
 };

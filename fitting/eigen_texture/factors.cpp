@@ -105,6 +105,7 @@ Factors canonical(const Factors& factors, Index rank) {
   const Eigen::SelfAdjointEigenSolver<MatrixXd> inner(coefficients.transpose() * coefficients);
   const double least = kRelativeRounding * std::max(0.0, inner.eigenvalues().tail(1).sum());
   const Index kept = (inner.eigenvalues().array() > least).count();
+  if (kept == 0) return {factors.basis.leftCols(0), factors.coefficients.leftCols(0)};
   const MatrixXd directions = inner.eigenvectors().rightCols(kept);
   const VectorXd lengths = inner.eigenvalues().tail(kept).cwiseSqrt();
   const MatrixXd stretched = directions * lengths.asDiagonal();

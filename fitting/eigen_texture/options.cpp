@@ -33,6 +33,9 @@ OptionTable option_table(Options& options) {
                         "Basis textures of the three colour channels together"),
           number_option("texture-side", options.texture_side, kLeastSide, kMostSide,
                         "The texture has at most so many texels squared"),
+          choice_option("eigen-solve", options.solve,
+                        {{"batch", Solve::batch}, {"incremental", Solve::incremental}},
+                        "Bases are found at the end from all views, or while views arrive"),
           number_option(detail::kTexelOption, options.texel_mm, detail::kLeastTexel_mm,
                         detail::kMostTexel_mm,
                         "Side of a texel on the surface, mm (default: what a pixel covers "
