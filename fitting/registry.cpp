@@ -3,6 +3,7 @@
 #include "fitting/depth_quads/descriptor.h"
 #include "fitting/descriptor.h"
 #include "fitting/detail/descriptor.h"
+#include "fitting/eigen_texture/descriptor.h"
 #include "fitting/iwls/descriptor.h"
 #include "fitting/mean/descriptor.h"
 #include "fitting/multi_eigenspace/descriptor.h"
@@ -20,11 +21,12 @@ namespace {
 /// One line per representation; the first is the default.
 std::vector<const Descriptor*>& registry() {
   static std::vector<const Descriptor*> all{
-      &sparse::kDescriptor,      &detail::kDescriptor,
-      &iwls::kDescriptor,        &spherical_harmonics::kDescriptor,
-      &mean::kDescriptor,        &nearest_views::kDescriptor,
-      &depth_quads::kDescriptor, &view_dependent_texture::kDescriptor,
-      &billboard::kDescriptor,   &multi_eigenspace::kDescriptor,
+      &detail::kDescriptor,        &sparse::kDescriptor,
+      &iwls::kDescriptor,          &spherical_harmonics::kDescriptor,
+      &mean::kDescriptor,          &nearest_views::kDescriptor,
+      &depth_quads::kDescriptor,   &view_dependent_texture::kDescriptor,
+      &billboard::kDescriptor,     &multi_eigenspace::kDescriptor,
+      &eigen_texture::kDescriptor,
   };
   return all;
 }

@@ -34,16 +34,17 @@ struct PhotometricOptions {
 };
 
 /// Where patches lie: one per vertex of the mesh; the mesh subdivided until its edges are as short
-/// as a pixel's footprint; one per vertex and a texture of such a footprint, which is what
-/// representation "detail" is.
-enum class Patches { vertex, texel, detail };
+/// as a pixel's footprint; one per vertex and, where the representation is "detail", a texture of
+/// such a footprint. Automatic: as detail, but where the vertices lie about as densely as the
+/// texels would a texture has nothing to add, and the representation becomes "sparse".
+enum class Patches { automatic, vertex, texel, detail };
 
 /// Everything a reconstruction may be asked.
 struct ReconstructionOptions {
-  std::string representation = "sparse";  ///< name of a descriptor (fitting/descriptor.h)
+  std::string representation = "detail";  ///< name of a descriptor (fitting/descriptor.h)
   fitting::OptionValues fit{};            ///< its settings
   FrameChoice frames{};
-  Patches patches = Patches::vertex;
+  Patches patches = Patches::automatic;
   double texel_px = 1.5;  ///< of texel patches: longest edge, pixels, > 0
   core::SamplingLimits limits{};
   PhotometricOptions photometric{};

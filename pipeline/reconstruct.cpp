@@ -25,6 +25,7 @@ namespace sheen::pipeline {
 namespace {
 
 constexpr const char* kMean = "mean";
+constexpr const char* kVertexPatches = "sparse";
 
 /// Refines the board where it is asked for and the poses come from its tags.
 std::optional<capture::BoardRefinement> refine_board(const capture::Session& session,
@@ -55,6 +56,7 @@ struct Reconstruction::Impl {
   core::Mesh patch_mesh();
   void look_at_sides(const TrackedFrame& tracked, ProgressSink& sink);
   double texel_size_m() const;
+  void choose_texels();
   std::unique_ptr<capture::PoseEstimator> pose_estimator() const;
   std::unique_ptr<fitting::Fitter> make_fitter(const std::string& name,
                                                const fitting::OptionValues& values,
@@ -107,7 +109,7 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
           options.threads)),
       visibility(inputs.make_visibility) {
   if (asks_texel_size(options.representation, options.fit)) {
-    set_texel_size(texel_size_m(), options.fit);
+    choose_texels();
   }
   fitter = make_fitter(options.representation, options.fit, history);
   if (options.with_mean && options.representation != kMean) {
@@ -192,6 +194,17 @@ double Reconstruction::Impl::texel_size_m() const {
       is_live ? std::nullopt : pixel_footprint_m(session, mesh, *pose_estimator());
   const double diagonal_m = static_cast<double>(core::bounds_of(mesh).diagonal().norm());
   return footprint_m.value_or(diagonal_m / session.camera.height_px());
+}
+
+void Reconstruction::Impl::choose_texels() {
+  const double texel_m = texel_size_m();
+  if (options.patches == Patches::automatic && !are_finer_than_vertices(texel_m, mesh)) {
+    options.representation = kVertexPatches;
+    options.patches = Patches::vertex;
+    return;
+  }
+  if (options.patches == Patches::automatic) options.patches = Patches::detail;
+  set_texel_size(texel_m, options.fit);
 }
 
 std::unique_ptr<fitting::Fitter> Reconstruction::Impl::make_fitter(

@@ -3,17 +3,12 @@
 
 #include "capture/pose/board_tags.h"
 #include "core/diagnostics/error.h"
+#include "pipeline/spread_views.h"
 
 namespace sheen::pipeline {
 namespace {
 
-constexpr std::size_t kMostViews = 240;
-
-/// Keeps every second view: the recording is longer than needed.
-void thin_out(std::vector<std::vector<capture::TagDetection>>& views) {
-  for (std::size_t i = 0; 2 * i < views.size(); ++i) views[i] = std::move(views[2 * i]);
-  views.resize((views.size() + 1) / 2);
-}
+constexpr std::size_t kMostBoardViews = 240;
 
 }  // namespace
 
@@ -28,18 +23,14 @@ std::optional<capture::BoardRefinement> refine_session_board(const capture::Sess
   const capture::Board board = capture::read_board(*session.board);
   capture::BoardTagFinder finder(board, session.camera);
   const auto frames = capture::open_frames(session, start, end);
-  std::vector<std::vector<capture::TagDetection>> views;
-  int stride = 1;
+  SpreadViews views(kMostBoardViews);
   for (int i = 0; const auto frame = frames->next(); ++i) {
     sink.progress({"refining the board", i + 1});
-    if (i % stride != 0) continue;
+    if (!views.wants_next()) continue;
     finder.look_at(*frame);
-    views.push_back(finder.find());
-    if (views.size() < kMostViews) continue;
-    thin_out(views);
-    stride *= 2;
+    views.add(finder.find());
   }
-  return capture::refine_board(board, session.camera, views, lens);
+  return capture::refine_board(board, session.camera, views.views(), lens);
 }
 
 }  // namespace sheen::pipeline

@@ -5,6 +5,7 @@
 #include "capture/pose/board_tags.h"
 #include "capture/source/image_folder_source.h"
 #include "core/diagnostics/error.h"
+#include "pipeline/spread_views.h"
 
 #include <fmt/format.h>
 
@@ -14,22 +15,16 @@
 namespace sheen::pipeline {
 namespace {
 
-constexpr std::size_t kMostViews = 160;
+constexpr std::size_t kMostWalkViews = 160;
 constexpr int kRecogniseFrames = 20;  // where only the board is asked for
 
-using Tags = std::vector<capture::TagDetection>;
+using Tags = SpreadViews::Tags;
 
 struct SeenTags {
-  std::vector<Tags> views;
+  SpreadViews views{kMostWalkViews};
   int frames = 0;
   int frames_with_two = 0;  ///< of those looked at
 };
-
-/// Keeps every second view: the recording is longer than needed.
-void thin_out(std::vector<Tags>& views) {
-  for (std::size_t i = 0; 2 * i < views.size(); ++i) views[i] = std::move(views[2 * i]);
-  views.resize((views.size() + 1) / 2);
-}
 
 /// Says so when an image shows tags, but not the default sheet's.
 void refuse_other_board(const capture::Session& session, const capture::Board& sheets,
@@ -49,21 +44,18 @@ SeenTags read_tags(const capture::Session& session, const capture::Board& board,
   capture::BoardTagFinder finder(board, session.camera);
   const auto frames = capture::open_frames(session, choice.start, choice.end);
   SeenTags seen;
-  int stride = 1;
   while (const auto frame = frames->next()) {
     sink.progress({"finding tags", seen.frames + 1, frames->frame_count().value_or(0)});
-    if (seen.frames++ % stride != 0) continue;
+    ++seen.frames;
+    if (!seen.views.wants_next()) continue;
     finder.look_at(*frame);
     Tags tags = finder.find();
     if (tags.empty() && seen.frames == 1 && !session.board) {
       refuse_other_board(session, board, *frame);
     }
     seen.frames_with_two += tags.size() >= 2 ? 1 : 0;
-    seen.views.push_back(std::move(tags));
+    seen.views.add(std::move(tags));
     if (session.camera_file && seen.frames_with_two >= kRecogniseFrames) break;
-    if (seen.views.size() < kMostViews) continue;
-    thin_out(seen.views);
-    stride *= 2;
   }
   return seen;
 }
@@ -96,7 +88,7 @@ capture::LensPrior prior_of(const capture::Session& session) {
 
 capture::WalkCalibration calibrate(const capture::Session& session, const capture::Board& board,
                                    const SeenTags& seen) {
-  const auto found = capture::calibrate_from_walk(board, prior_of(session), seen.views);
+  const auto found = capture::calibrate_from_walk(board, prior_of(session), seen.views.views());
   const std::string fault =
       found ? capture::find_fault(*found) : "no lens explains where the tags are seen";
   if (fault.empty()) return *found;
@@ -117,7 +109,7 @@ WalkFindings read_walk(const capture::Session& session, const FrameChoice& choic
   require_tags(session, seen);
   if (!session.board) {
     Tags all;
-    for (const Tags& tags : seen.views) all.insert(all.end(), tags.begin(), tags.end());
+    for (const Tags& tags : seen.views.views()) all.insert(all.end(), tags.begin(), tags.end());
     findings.sheet = capture::recognise_default_sheet(all);
     findings.board = capture::default_board(findings.sheet.value());
   }

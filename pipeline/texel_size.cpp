@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/texel_size.h"
 
+#include "core/mesh/parts.h"
 #include "core/numerics/median.h"
 #include "fitting/descriptor.h"
 #include "fitting/detail/options.h"
@@ -28,6 +29,16 @@ bool asks_texel_size(std::string_view representation, const fitting::OptionValue
   const auto options = fitting::representation_named(representation).default_options();
   return std::ranges::any_of(options->table(),
                              [](const fitting::FitOption& o) { return o.name == kTexelOption; });
+}
+
+bool are_finer_than_vertices(double texel_m, const core::Mesh& mesh) {
+  constexpr double least_per_vertex = 2;
+  double area_m2 = 0;
+  for (const auto& triangle : mesh.triangles) {
+    area_m2 += core::doubled_area(mesh, triangle).norm() / 2;
+  }
+  const auto vertices = static_cast<double>(mesh.positions.size());
+  return area_m2 >= least_per_vertex * vertices * texel_m * texel_m;
 }
 
 void set_texel_size(double texel_m, fitting::OptionValues& values) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/mesh/mesh.h"
 #include "fitting/option_table.h"
 
 #include <Eigen/Geometry>
@@ -17,6 +18,9 @@ double pixel_footprint_m(std::span<const Eigen::Isometry3d> camera_from_object,
 
 /// Whether the representation has texels whose side (option "texel-mm") nobody has chosen.
 bool asks_texel_size(std::string_view representation, const fitting::OptionValues& values);
+
+/// Whether texels of this size lie clearly more densely than the vertices.
+bool are_finer_than_vertices(double texel_m, const core::Mesh& mesh);
 
 /// Chooses it.
 void set_texel_size(double texel_m, fitting::OptionValues& values);

@@ -128,11 +128,14 @@ class PythonSink final : public pipeline::ProgressSink {
   std::optional<py::function> progress_;
 };
 
-Model reconstruct(const capture::Session& session, const std::string& representation,
+Model reconstruct(const capture::Session& session, const std::optional<std::string>& representation,
                   const fitting::OptionValues& options, int start, std::optional<int> end,
                   int hold_out, int threads, std::optional<py::function> progress) {
   pipeline::ReconstructionOptions settings;
-  settings.representation = representation;
+  if (representation) {
+    settings.representation = *representation;
+    settings.patches = pipeline::Patches::detail;  // no other is chosen instead
+  }
   settings.fit = options;
   settings.frames.start = start;
   settings.frames.end = end;
@@ -251,11 +254,12 @@ void bind_model(py::module_& module) {
       py::arg("path"), "Reads a .glb that sheen wrote. Raises sheen.InputError for anything else.");
   module.def(
       "reconstruct", &reconstruct, py::arg("session"), py::kw_only(),
-      py::arg("representation") = "sparse", py::arg("options") = fitting::OptionValues{},
+      py::arg("representation") = py::none(), py::arg("options") = fitting::OptionValues{},
       py::arg("start") = 0, py::arg("end") = py::none(), py::arg("hold_out") = 0,
       py::arg("threads") = 1, py::arg("progress") = py::none(),
       "Poses every frame of a session, fits a light field and returns the model.\n\n"
-      "representation, options: as on the command line, options as text by name without\n"
+      "representation, options: as on the command line (None: as with --patches auto), options\n"
+      "as text by name without "
       "dashes, e.g. representation='iwls', options={'fitter': 'batch'}.\n"
       "start, end: frames [start, end); hold_out: every n-th frame stays out of the fit.\n"
       "progress: called as progress(step, done, total), total 0 where it is not known; what\n"

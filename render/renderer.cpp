@@ -6,6 +6,7 @@
 #include "fitting/patch_light_field.h"
 #include "render/billboard/billboard_renderer.h"
 #include "render/depth_quads/quad_renderer.h"
+#include "render/eigen_texture/eigen_texture_renderer.h"
 #include "render/gl/offscreen_target.h"
 #include "render/multi_eigenspace/eigenspace_renderer.h"
 #include "render/surface/surface_renderer.h"
@@ -62,6 +63,10 @@ std::unique_ptr<Renderer> make_renderer(Context& context, const core::Mesh& mesh
   }
   if (const auto* const patches = fitting::as_patches(light_field)) {
     return make_gl_surface_renderer(context, mesh, *patches, threads);
+  }
+  if (const auto* const texture =
+          dynamic_cast<const fitting::eigen_texture::EigenTexture*>(&light_field)) {
+    return make_eigen_texture_renderer(context, mesh, *texture, threads);
   }
   if (auto renderer = make_image_renderer(mesh, light_field, threads)) return renderer;
   throw core::Error(core::Error::Kind::run_failed,

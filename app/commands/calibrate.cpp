@@ -8,7 +8,7 @@
 #include "capture/calibration/camera_images.h"
 #include "capture/calibration/coverage_image.h"
 #include "capture/pose/board_diagnosis.h"
-#include "capture/source/http_images.h"
+#include "capture/source/network_address.h"
 #include "capture/source/open_camera.h"
 #include "core/diagnostics/error.h"
 #include "core/image/write_image.h"
@@ -280,7 +280,8 @@ void add_calibrate_command(CommandLine& program, CommandContext& context) {
   command
       .option("source", options->source,
               "Video, folder of images, session folder (its recording is taken), or a camera: a "
-              "device such as /dev/video0, the address of an MJPEG stream")
+              "device such as /dev/video0, the address of an MJPEG (http://...) or H.264 stream "
+              "(rtsp://...)")
       .required();
   command.option("-o,--output", options->output, "Camera file to write")
       .required()

@@ -7,7 +7,7 @@
 #include "app/preview/run_preview.h"
 #include "capture/session/camera_recording.h"
 #include "capture/session/session.h"
-#include "capture/source/http_images.h"
+#include "capture/source/network_address.h"
 #include "capture/source/open_camera.h"
 #include "core/diagnostics/error.h"
 #include "core/files/folder_lock.h"
@@ -29,6 +29,7 @@ std::string size_text(int width_px, int height_px) {
 bool can_be_recorded(const capture::CameraDescription& camera) {
   switch (camera.format) {
     case capture::PixelFormat::mjpeg:
+    case capture::PixelFormat::video:
       return true;
     case capture::PixelFormat::yuyv:
       return camera.width_px % 2 == 0;
@@ -133,7 +134,7 @@ void capture_session(std::unique_ptr<capture::Camera> camera, const CaptureOptio
   const capture::CameraDescription description = camera->description();
   check_size(description, setup.camera);
   check_before_recording(options, setup, context);
-  capture::SessionRecorder recorder(options.session, setup, description.fps);
+  capture::SessionRecorder recorder(options.session, setup, description.fps, description.video);
   const core::FolderLock lock(options.session);
   const capture::Session session = capture::open_session(options.session);
   const FinishOnInterrupt finishing;
@@ -168,7 +169,10 @@ void add_capture_command(CommandLine& program, CommandContext& context) {
       "A phone whose app serves its camera as MJPEG:\n"
       "  sheen capture http://192.168.1.20:8080/video -o knot --camera phone.yaml --board "
       "board.yaml "
-      "--mesh knot.ply");
+      "--mesh knot.ply\n"
+      "A camera that sends H.264 by RTSP:\n"
+      "  sheen capture rtsp://USER:PASSWORD@192.168.1.21/stream1 -o knot --like "
+      "sample_data/glossy");
   add_capture_options(command, *options);
   add_common_options(command, context);
   command.action([options, &context] { run_capture(*options, context); });

@@ -23,8 +23,9 @@ std::optional<int> parse_int(std::string_view text) {
 void add_camera_options(Command command, CaptureOptions& options) {
   using capture::PixelFormat;
   command
-      .option("device", options.camera.device,
-              "Camera: a device, or the address of an MJPEG stream (http://...)")
+      .option(
+          "device", options.camera.device,
+          "Camera: a device, or the address of an MJPEG (http://...) or H.264 stream (rtsp://...)")
       .show_default();
   command.flag("--list", options.list, "List cameras, their modes and controls");
   command

@@ -4,9 +4,11 @@
 #include "app/commands/export_cost.h"
 #include "app/commands/export_dataset.h"
 #include "app/commands/frame_options.h"
+#include "app/commands/poster.h"
 #include "app/commands/table_options.h"
 #include "core/diagnostics/error.h"
 #include "exporters/format.h"
+#include "exporters/viewer/viewer_format.h"
 #include "fitting/model_file/model_file.h"
 
 #include <fmt/format.h>
@@ -48,6 +50,9 @@ void export_model(const ExportOptions& options, const CommandContext& context) {
 
   // Convert.
   const fitting::Model model = fitting::read_model(options.source);
+  if (&format == &exporters::viewer::kFormat) {
+    draw_missing_poster(model, fitting::options_as<exporters::viewer::Options>(*settings), context);
+  }
   const exporters::Written written = format.write(model, options.output, *settings);
 
   // Report.

@@ -2,6 +2,7 @@
 #include "app/commands/import.h"
 
 #include "capture/calibration/camera_file.h"
+#include "capture/dataset/board_alignment.h"
 #include "capture/dataset/dataset_formats.h"
 #include "capture/dataset/import_session.h"
 
@@ -18,6 +19,7 @@ struct ImportOptions {
   std::filesystem::path camera;  ///< in place of the data set's; empty: none
   double metres_per_unit = 1;
   std::vector<double> known_distance;  ///< units of the poses, metres; empty: none
+  std::filesystem::path board;         ///< of tags that the images show; empty: none
   bool mesh_has_unit = false;
 };
 
@@ -42,15 +44,26 @@ void run_import(const ImportOptions& options, const CommandContext& context) {
   context.check_outputs({options.session});
   const std::filesystem::path images =
       options.images.empty() ? capture::images_of_dataset(options.dataset) : options.images;
-  const capture::SessionImport import{.dataset = read_dataset(options, images),
-                                      .images = images,
-                                      .mesh = options.mesh,
-                                      .metres_per_unit = metres_per_unit(options),
-                                      .mesh_has_unit = options.mesh_has_unit};
-  capture::write_imported_session(import, options.session);
+  capture::SessionImport import{.dataset = read_dataset(options, images),
+                                .images = images,
+                                .mesh = options.mesh,
+                                .metres_per_unit = metres_per_unit(options),
+                                .mesh_has_unit = options.mesh_has_unit,
+                                .board = options.board};
   const std::size_t count = import.dataset.frames.size();
-  context.publish({{"session", options.session.string()}, {"frames", count}},
-                  fmt::format("{}: {} images\n", options.session.string(), count));
+  nlohmann::ordered_json document{{"session", options.session.string()}, {"frames", count}};
+  std::string text = fmt::format("{}: {} images\n", options.session.string(), count);
+  if (!options.board.empty()) {
+    const auto alignment = capture::align_to_board(import.dataset, images, options.board);
+    import.metres_per_unit = alignment.metres_per_unit;
+    import.board_from_world = alignment.board_from_world;
+    document["metres_per_unit"] = alignment.metres_per_unit;
+    document["aligned"] = {{"images", alignment.images}, {"rms_m", alignment.rms_m}};
+    text += fmt::format("a unit is {:.6g} m, by the tags in {} images; cameras within {:.2f} mm\n",
+                        alignment.metres_per_unit, alignment.images, 1000 * alignment.rms_m);
+  }
+  capture::write_imported_session(import, options.session);
+  context.publish(document, text);
 }
 
 }  // namespace
@@ -95,11 +108,18 @@ void add_import_command(CommandLine& program, CommandContext& context) {
       command.option("--scale", options->metres_per_unit, "metres per unit of the poses")
           .positive()
           .show_default();
+  const Option known =
+      command
+          .option("--known-distance", options->known_distance,
+                  "a distance in units of the poses and in metres, in place of --scale")
+          .numbers(2)
+          .excludes(scale);
   command
-      .option("--known-distance", options->known_distance,
-              "a distance in units of the poses and in metres, in place of --scale")
-      .numbers(2)
-      .excludes(scale);
+      .option("--board", options->board,
+              "board.yaml of tags that the images show: scale and place follow from them")
+      .type("FILE")
+      .excludes(scale)
+      .excludes(known);
   command.flag("--scale-mesh", options->mesh_has_unit,
                "the mesh is in the unit of the poses, too: scale it with them");
   add_common_options(command, context);

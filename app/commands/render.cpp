@@ -72,6 +72,12 @@ void add_turntable_options(Command command, Command what, TurntableOptions& opti
   command.option("--up", options.up, "Axis of the object that points upwards")
       .one_of({"x", "y", "z", "-x", "-y", "-z"})
       .show_default();
+  constexpr int most_copies = 1'000'000;
+  command
+      .option("--copies", options.copies,
+              "Of the object in every picture of a turntable, drawn at once (multi-eigenspace)")
+      .range(1, most_copies)
+      .type("N");
   command.option("--fps", options.fps, "Pictures a second of a turntable's video")
       .range(1, 240)
       .show_default();

@@ -86,13 +86,15 @@ void save(const ReplayOptions& options, const Reconstruction& fitted) {
 ReplayReport describe(const ReplayOptions& options, const Reconstruction& fitted) {
   const fitting::LightField& light_field = fitted.light_field();
   const fitting::FitStatistics fit = fitted.fit_statistics();
-  nlohmann::ordered_json settings = to_json(options);
+  ReplayOptions ran = options;
+  ran.reconstruction = fitted.options();  // with what was measured and chosen
+  nlohmann::ordered_json settings = to_json(ran);
   settings["tolerance"] = fit.tolerance ? nlohmann::ordered_json(*fit.tolerance) : nullptr;
   ReplayReport report{.frames = fitted.frames(),
                       .timer = fitted.times(),
                       .fit = fit,
                       .finish_ms = fitted.finish_cpu_ms(),
-                      .representation = options.reconstruction.representation,
+                      .representation = ran.reconstruction.representation,
                       .coefficients = light_field.coefficient_count(),
                       .model_bytes = std::filesystem::file_size(options.output),
                       .board = fitted.board_refinement(),
@@ -161,20 +163,20 @@ void add_held_out(const ReplayOptions& options, Reconstruction& fitted,
 std::unique_ptr<LiveSession> make_live_session(const ReplayOptions& options, Reconstruction& fitted,
                                                bool is_camera) {
   if (!options.preview) return nullptr;
-  return std::make_unique<LiveSession>(
-      LiveSession::Parts{.model = fitted.model(),
-                         .history = *fitted.history(),
-                         .baseline = fitted.mean_history(),
-                         .mesh = fitted.mesh(),
-                         .camera = fitted.session().camera,
-                         .board_from_object = fitted.session().board_from_object,
-                         .limits = options.reconstruction.limits,
-                         .is_camera = is_camera,
-                         .refuse_faults = options.reconstruction.refuse_mismatches,
-                         .save = [&options, &fitted](const fitting::LightField& light_field) {
-                           fitting::write_model(options.output, fitted.mesh(), light_field);
-                           return "Saved " + options.output.filename().string();
-                         }});
+  return std::make_unique<LiveSession>(LiveSession::Parts{
+      .model = fitted.model(),
+      .history = *fitted.history(),
+      .baseline = fitted.mean_history(),
+      .mesh = fitted.mesh(),
+      .camera = fitted.session().camera,
+      .board_from_object = fitted.session().board_from_object,
+      .limits = options.reconstruction.limits,
+      .is_camera = is_camera,
+      .refuse_faults = options.reconstruction.refuse_mismatches,
+      .save = [&options, &fitted](const fitting::LightField& light_field) {
+        fitting::write_model(options.output, fitted.mesh(), light_field, fitted.frames().seen);
+        return "Saved " + options.output.filename().string();
+      }});
 }
 
 pipeline::ReconstructionOptions completed(const ReplayOptions& options,
@@ -258,6 +260,7 @@ void run_replay(ReplayOptions options, const CommandContext& context) {
   capture::Session session;
   const WalkAnswer walk = complete_session(options, session, context);
   if (made) made->keep();
+  if (!options.note.empty()) context.note(options.note);
   auto frames = capture::open_frames(session, options.reconstruction.frames.start,
                                      options.reconstruction.frames.end);
   if (options.preview) frames = capture::at_recorded_pace(std::move(frames));
@@ -281,9 +284,8 @@ FitOutcome fit_session(const ReplayOptions& options, const capture::Session& ses
                          .on_samples = state.listener()},
                         completed(options, context), sink);
   if (!options.state_output.empty()) {
-    state.open(options.state_output,
-               {fitted.options().representation, fitted.options().fit, fitted.mesh(),
-                fitted.options().share});
+    state.open(options.state_output, {fitted.options().representation, fitted.options().fit,
+                                      fitted.mesh(), fitted.options().share});
   }
   const auto live = make_live_session(options, fitted, camera != nullptr);
   FitOutcome outcome;

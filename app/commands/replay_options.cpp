@@ -8,6 +8,7 @@
 
 #include <charconv>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,29 +23,46 @@ const std::vector<std::pair<std::string, VisibilityMethod>> kVisibilities{
     {"raster", VisibilityMethod::raster},
     {"rays", VisibilityMethod::rays},
     {"depth", VisibilityMethod::depth}};
-const std::vector<std::pair<std::string, Patches>> kPatches{
-    {"vertex", Patches::vertex}, {"texel", Patches::texel}, {"detail", Patches::detail}};
+const std::vector<std::pair<std::string, std::optional<Patches>>> kPatches{
+    {"auto", Patches::automatic},
+    {"vertex", Patches::vertex},
+    {"texel", Patches::texel},
+    {"detail", Patches::detail}};
 constexpr const char* kVertexPatches = "sparse";
 constexpr const char* kTexture = "detail";
 
 template <typename Value>
-std::string word_for(const std::vector<std::pair<std::string, Value>>& words, Value value) {
+std::string word_for(const std::vector<std::pair<std::string, Value>>& words, const Value& value) {
   for (const auto& [word, candidate] : words) {
     if (candidate == value) return word;
   }
   return {};
 }
 
-/// `--patches detail` and the representation of this name mean each other.
-void reconcile_patches(pipeline::ReconstructionOptions& fit) {
-  const bool wants_texture = fit.patches == Patches::detail;
-  if (wants_texture && fit.representation == kVertexPatches) fit.representation = kTexture;
+/// Representation and patches from what was said of them. A texture and patches at vertices are one
+/// representation each, so --patches chooses between them where --representation is not given; and
+/// a state holds samples, of which no texture can be made.
+void reconcile_patches(const RepresentationChoice& choice, const std::optional<Patches>& wanted,
+                       ReplayOptions& options) {
+  pipeline::ReconstructionOptions& fit = options.reconstruction;
+  const bool is_free = choice.representation == kTexture && !choice.asked_by_name;
+  const Patches patches = wanted.value_or(Patches::automatic);
+  const bool for_state = patches == Patches::automatic && !options.state_output.empty();
+  if (is_free && (for_state || patches == Patches::vertex || patches == Patches::texel)) {
+    fit.representation = kVertexPatches;
+    static_cast<void>(resolve_representation(fit.representation, fit.fit));
+    if (for_state) options.note = "note: a state holds no texture, so this is --patches vertex";
+  }
   const bool has_texture = fit.representation == kTexture;
-  if ((wants_texture && !has_texture) || (has_texture && fit.patches == Patches::texel)) {
-    throw UsageError("--patches " + word_for(kPatches, fit.patches) +
+  const bool agree = patches == Patches::automatic || (patches == Patches::detail) == has_texture;
+  if (!agree) {
+    throw UsageError("--patches " + word_for(kPatches, std::optional(patches)) +
                      " contradicts --representation " + fit.representation);
   }
-  if (has_texture) fit.patches = Patches::detail;
+  fit.patches = patches != Patches::automatic ? patches
+                : !has_texture                ? Patches::vertex
+                : is_free                     ? Patches::automatic
+                                              : Patches::detail;
 }
 
 core::PatchShare share_from(const std::string& text) {
@@ -74,15 +92,16 @@ void check_share(const ReplayOptions& options) {
   }
 }
 
-}  // namespace
+using WantedPatches = std::shared_ptr<std::optional<Patches>>;
 
-void add_model_options(Command command, ReplayOptions& options) {
+void add_model_options(Command command, const WantedPatches& patches, ReplayOptions& options) {
   pipeline::ReconstructionOptions& fit = options.reconstruction;
   const auto choice = std::make_shared<RepresentationChoice>();
   add_representation_options(command, *choice);
-  command.after_parsing([choice, &fit] {
-    fit.representation = choice->representation;
-    fit.fit = choice->values;
+  command.after_parsing([choice, patches, &options] {
+    options.reconstruction.representation = choice->representation;
+    options.reconstruction.fit = choice->values;
+    reconcile_patches(*choice, *patches, options);
   });
   command.choice("--visibility", options.visibility, kVisibilities,
                  "How hidden vertices are found");
@@ -108,6 +127,12 @@ void add_model_options(Command command, ReplayOptions& options) {
       .show_default();
 }
 
+}  // namespace
+
+void add_model_options(Command command, ReplayOptions& options) {
+  add_model_options(command, std::make_shared<std::optional<Patches>>(), options);
+}
+
 void add_replay_options(Command command, ReplayOptions& options) {
   pipeline::ReconstructionOptions& fit = options.reconstruction;
   command
@@ -127,12 +152,13 @@ void add_replay_options(Command command, ReplayOptions& options) {
               "without .glb)")
       .type("DIR");
   add_walk_options(command, options.walk);
-  add_model_options(command, options);
+  const auto patches = std::make_shared<std::optional<Patches>>();
   command.choice(
-      "--patches", fit.patches, kPatches,
+      "--patches", *patches, kPatches,
       "vertex: one patch per vertex; texel: the mesh is subdivided to the footprint of a "
-      "pixel first; detail: one per vertex and a texture as fine as the images");
-  command.after_parsing([&fit] { reconcile_patches(fit); });
+      "pixel first; detail: one per vertex and a texture as fine as the images; auto: detail, but "
+      "vertex where the vertices lie as densely as pixels, or with --state (default auto)");
+  add_model_options(command, patches, options);
   command.option("--texel-px", fit.texel_px, "With --patches texel: longest edge, pixels")
       .positive()
       .show_default();
@@ -203,7 +229,7 @@ nlohmann::ordered_json to_json(const ReplayOptions& options) {
                             : value.is_discarded() ? nlohmann::ordered_json(text)
                                                    : value;
   }
-  document.update({{"patches", word_for(kPatches, fit.patches)},
+  document.update({{"patches", word_for(kPatches, std::optional(fit.patches))},
                    {"visibility", word_for(kVisibilities, options.visibility)},
                    {"hold_out", fit.frames.hold_out},
                    {"start", fit.frames.start},

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <filesystem>
+#include <string>
 
 namespace sheen::app {
 
@@ -26,6 +27,7 @@ struct ReplayOptions {
   std::filesystem::path poses_output;  ///< estimated poses, TUM form; empty: not written
   pipeline::ReconstructionOptions reconstruction;
   VisibilityMethod visibility = VisibilityMethod::automatic;
+  std::string note;                       ///< what was not chosen as usual and why; empty: nothing
   bool preview = false;                   ///< watched in a window
   std::filesystem::path snapshots = ".";  ///< folder for the window's snapshots
 };

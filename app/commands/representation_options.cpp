@@ -73,11 +73,12 @@ RepresentationChoice resolve_representation(std::string representation,
                                             fitting::OptionValues given) {
   const std::vector<OwnedOption> known = known_options();
   take_fitter_as_representation(representation, given);
+  const bool asked_by_name = !representation.empty();
   if (representation.empty()) representation = implied_representation(given, known);
   refuse_foreign_options(representation, given, known);
   // Values that are not allowed are refused now, before the long work.
   static_cast<void>(fitting::options_from(fitting::representation_named(representation), given));
-  return {std::move(representation), std::move(given)};
+  return {std::move(representation), asked_by_name, std::move(given)};
 }
 
 void add_representation_options(Command command, RepresentationChoice& choice) {

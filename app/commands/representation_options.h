@@ -11,7 +11,8 @@ namespace sheen::app {
 /// Which representation is fitted, and how. The options are those of all descriptors
 /// (fitting/descriptor.h); a word that only one representation knows implies it.
 struct RepresentationChoice {
-  std::string representation = "sparse";  ///< name of a descriptor
+  std::string representation = "detail";  ///< name of a descriptor
+  bool asked_by_name = false;             ///< else the default, or implied by other options
   fitting::OptionValues values{};         ///< only what was given, and fits the representation
 };
 

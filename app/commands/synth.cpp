@@ -17,11 +17,15 @@ namespace {
 
 namespace synthetic = capture::synthetic;
 
+constexpr const char* kWalk = "walk";
+constexpr const char* kTurntable = "turntable";
+
 struct SynthOptions {
   std::string scene;
   std::filesystem::path folder;
   std::string size;
   std::string mesh;
+  std::string path = kWalk;
   synthetic::SyntheticOptions session;
 };
 
@@ -46,6 +50,8 @@ void run_synth(SynthOptions& options, const CommandContext& context) {
   synthetic::SyntheticOptions& session = options.session;
   session.scene = synthetic::scene_kind(options.scene).value();
   if (!options.mesh.empty()) session.mesh = options.mesh;
+  session.path =
+      options.path == kTurntable ? synthetic::PathKind::turntable : synthetic::PathKind::walk;
   session.threads = context.threads;
   try {
     session.check();
@@ -62,6 +68,7 @@ void run_synth(SynthOptions& options, const CommandContext& context) {
   context.publish(
       {{"session", options.folder.string()},
        {"scene", options.scene},
+       {"path", options.path},
        {"width", session.width_px},
        {"height", session.height_px},
        {"frames", session.frames},
@@ -132,6 +139,11 @@ void add_synth_command(CommandLine& program, CommandContext& context) {
               "Put this mesh on the board instead (metres, z up; PLY, OBJ or GLB)")
       .excludes(mesh_vertices)
       .type("FILE");
+  command
+      .option("--path", options->path,
+              "A camera in hand on a walk round the object, or the object on a turntable")
+      .one_of({kWalk, kTurntable})
+      .show_default();
   add_image_options(command, *options);
   command.option("--seed", session.seed, "Seed of path, tremor and noise").type("N").show_default();
   add_common_options(command, context);

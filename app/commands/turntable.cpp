@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/turntable.h"
 
+#include "app/commands/smooth_picture.h"
 #include "app/preview/orbit_camera.h"
 #include "app/terminal_sink.h"
 #include "capture/files/video_writer.h"
@@ -9,54 +10,28 @@
 #include "core/text/number.h"
 #include "exporters/upright.h"
 #include "fitting/model_file/model_file.h"
+#include "render/multi_eigenspace/copies_renderer.h"
 #include "render/renderer.h"
 
 #include <fmt/format.h>
-#include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <vector>
 
 namespace sheen::app {
 namespace {
 
-constexpr int kFiner = 2;  // drawn so much larger, so that outlines become smooth
+using fitting::multi_eigenspace::MultiEigenspace;
+using fitting::multi_eigenspace::PictureFrame;
+
 constexpr int kLeastSide_px = 16, kMostSide_px = 8192;
+constexpr double kGap = 2.2;  // between the middles of copies, in radii
 const cv::Scalar kDark(0x22, 0x1e, 0x1c);
 const cv::Scalar kLight(0xf4, 0xf3, 0xf2);
-
-/// A lens that sees all of the object whatever the picture's shape.
-core::CameraModel turntable_lens(const cv::Size& size_px) {
-  const int side = std::min(size_px.width, size_px.height);
-  core::CameraModel::Intrinsics intrinsics = OrbitCamera::lens(side, side).intrinsics();
-  intrinsics.width_px = size_px.width;
-  intrinsics.height_px = size_px.height;
-  intrinsics.principal_px = {0.5 * (size_px.width - 1), 0.5 * (size_px.height - 1)};
-  return core::CameraModel(intrinsics);
-}
-
-/// CV_8UC4, B G R A, not premultiplied.
-cv::Mat with_alpha(const render::RenderedView& view, const cv::Size& size_px) {
-  // Averages of the object's pixels alone: black beside it must not darken the outline.
-  cv::Mat colours;
-  cv::Mat covered;
-  cv::resize(view.image, colours, size_px, 0, 0, cv::INTER_AREA);
-  cv::resize(view.mask, covered, size_px, 0, 0, cv::INTER_AREA);
-  cv::Mat picture(size_px, CV_8UC4, cv::Scalar::all(0));
-  for (int y = 0; y < size_px.height; ++y) {
-    for (int x = 0; x < size_px.width; ++x) {
-      const int alpha = covered.at<std::uint8_t>(y, x);
-      if (alpha == 0) continue;
-      auto& pixel = picture.at<cv::Vec4b>(y, x);
-      for (int channel = 0; channel < 3; ++channel) {
-        const int value = colours.at<cv::Vec3b>(y, x)[channel] * 255 / alpha;
-        pixel[channel] = static_cast<std::uint8_t>(std::min(value, 255));
-      }
-      pixel[3] = static_cast<std::uint8_t>(alpha);
-    }
-  }
-  return picture;
-}
 
 cv::Mat over(const cv::Mat& picture, const cv::Scalar& background) {
   cv::Mat result(picture.size(), CV_8UC3);
@@ -71,6 +46,39 @@ cv::Mat over(const cv::Mat& picture, const cv::Scalar& background) {
     }
   }
   return result;
+}
+
+int copies_in_row(int count) {
+  return static_cast<int>(std::ceil(std::sqrt(count)));
+}
+
+/// A square of copies about the object's place, every one turned by the golden angle more.
+std::vector<Eigen::Isometry3d> places_of_copies(const PictureFrame& frame, int count,
+                                                const Eigen::Vector3d& up) {
+  const int row = copies_in_row(count);
+  const Eigen::Vector3d right = up.unitOrthogonal();
+  const Eigen::Vector3d forward = up.cross(right);
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+  std::vector<Eigen::Isometry3d> places;
+  for (int i = 0; i < count; ++i) {
+    const double middle = 0.5 * (row - 1);
+    const Eigen::Vector3d place =
+        kGap * frame.radius_m * ((i % row - middle) * right + (i / row - middle) * forward);
+    places.emplace_back(Eigen::Translation3d(frame.centre + place) *
+                        Eigen::AngleAxisd(golden * i, up) * Eigen::Translation3d(-frame.centre));
+  }
+  return places;
+}
+
+std::unique_ptr<render::Renderer> renderer_of_copies(render::Context& gl,
+                                                     const fitting::LightField& light_field,
+                                                     int count, const Eigen::Vector3d& up) {
+  const auto* const spaces = dynamic_cast<const MultiEigenspace*>(&light_field);
+  if (spaces == nullptr) {
+    throw UsageError("--copies is for models of multi-eigenspace, this one is of " +
+                     std::string(light_field.representation()));
+  }
+  return render::make_copies_renderer(gl, *spaces, places_of_copies(spaces->frame(), count, up));
 }
 
 bool is_video(const std::filesystem::path& path) {
@@ -117,17 +125,20 @@ void render_turntable(const std::filesystem::path& path, const std::filesystem::
   context.check_outputs({to_video ? output : std::filesystem::path()});
   const fitting::Model model = fitting::read_model(path);
   const auto gl = render::make_osmesa_context();
-  const auto renderer = render::make_renderer(*gl, model.mesh, *model.light_field, context.threads);
-  const Eigen::Vector3f up = exporters::y_up_from_object(options.up).row(1);
-  OrbitCamera camera(model.mesh, up.cast<double>());
-  const core::CameraModel lens = turntable_lens(options.size_px * kFiner);
+  const Eigen::Vector3d up = exporters::y_up_from_object(options.up).row(1).cast<double>();
+  const bool one = options.copies == 1;
+  const auto renderer =
+      one ? render::make_renderer(*gl, model.mesh, *model.light_field, context.threads)
+          : renderer_of_copies(*gl, *model.light_field, options.copies, up);
+  // In radii, to the farthest corner of the square.
+  const double room = 1 + kGap * (copies_in_row(options.copies) - 1) / std::numbers::sqrt2;
+  OrbitCamera camera(model.mesh, up, room);
   std::optional<capture::VideoWriter> video;
   if (to_video) video.emplace(output, options.size_px, options.fps);
 
   TerminalSink sink(context);
   for (int i = 0; i < options.pictures; ++i) {
-    const auto view = renderer->render(lens, camera.camera_from_object());
-    const cv::Mat picture = with_alpha(view, options.size_px);
+    const cv::Mat picture = smooth_picture(*renderer, camera, options.size_px);
     if (video) {
       video->add(over(picture, options.background.value_or(kDark)));
     } else {

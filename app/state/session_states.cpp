@@ -60,7 +60,7 @@ void SessionState::open(const fs::path& path, const fitting::StateHeader& header
     throw core::bad_input(path,
                           "cannot be written: " + header.representation +
                               " is fitted to images, a state holds samples",
-                          "leave --state out or choose another representation");
+                          "leave --state out, or use --patches vertex or another representation");
   }
   writer_.emplace(path, header);
 }

@@ -2,6 +2,7 @@
 #include "capture/dataset/bundler_file.h"
 
 #include "capture/calibration/lens_record.h"
+#include "capture/dataset/camera_list.h"
 #include "capture/source/image_facts.h"
 #include "core/diagnostics/error.h"
 #include "core/files/read_file.h"
@@ -124,6 +125,7 @@ Dataset read_bundle(const fs::path& path, const fs::path& images) {
   }
   std::optional<ImageSize> size;
   Dataset dataset;
+  CameraList cameras;
   for (const std::string& name : names) {
     std::array<double, kMostBundleNumbers> v{};
     for (double& value : v) value = numbers.next();
@@ -138,13 +140,9 @@ Dataset read_bundle(const fs::path& path, const fs::path& images) {
     Eigen::Isometry3d camera_from_world = Eigen::Isometry3d::Identity();
     camera_from_world.linear() = flip.asDiagonal() * *rotation;
     camera_from_world.translation() = flip.cwiseProduct(Eigen::Vector3d(v[12], v[13], v[14]));
-    const auto same =
-        std::find_if(dataset.cameras.begin(), dataset.cameras.end(),
-                     [&](const auto& known) { return known.intrinsics() == camera.intrinsics(); });
     dataset.frames.push_back({.image = name,
-                              .camera = static_cast<std::size_t>(same - dataset.cameras.begin()),
+                              .camera = cameras.add(camera, dataset.cameras),
                               .world_from_camera = camera_from_world.inverse()});
-    if (same == dataset.cameras.end()) dataset.cameras.push_back(camera);
   }
   if (dataset.frames.empty()) refuse_bundle(path, "has no posed images");
   return dataset;

@@ -72,13 +72,20 @@ void write_imported_session(const SessionImport& import, const fs::path& folder)
                       staged.path() / "images" / fmt::format("{:06d}{}", i, ending));
     Eigen::Isometry3d pose = frame.world_from_camera;
     pose.translation() *= import.metres_per_unit;
-    poses.push_back({static_cast<double>(i), pose});
+    poses.push_back({static_cast<double>(i), import.board_from_world * pose});
   }
   const std::string mesh = put_mesh(import, staged.path());
   write_camera(staged.path() / "camera.yaml", dataset.cameras.front());
   write_trajectory(staged.path() / "poses.txt", poses);
-  write_session_file(staged.path(),
-                     {.images = "images/%06d" + ending, .poses = "poses.txt", .mesh = mesh});
+  SessionFile file{.images = "images/%06d" + ending,
+                   .poses = "poses.txt",
+                   .mesh = mesh,
+                   .board_from_object = import.board_from_world};
+  if (!import.board.empty()) {
+    copy_into_session(import.board, staged.path() / "board.yaml");
+    file.board = "board.yaml";
+  }
+  write_session_file(staged.path(), file);
   staged.commit();
 }
 

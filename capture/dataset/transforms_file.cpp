@@ -2,6 +2,7 @@
 #include "capture/dataset/transforms_file.h"
 
 #include "capture/calibration/lens_record.h"
+#include "capture/dataset/camera_list.h"
 #include "core/diagnostics/error.h"
 #include "core/files/read_file.h"
 #include "core/files/write_file.h"
@@ -215,6 +216,7 @@ Dataset read_transforms(const Path& path) {
   const bool is_list = file.is_object() && file.contains("frames") && file["frames"].is_array();
   if (!is_list) refuse_transforms(path, "is no JSON with a list of frames");
   Dataset dataset;
+  CameraList cameras;
   for (const ordered_json& frame : file["frames"]) {
     const bool has_image =
         frame.is_object() && frame.contains("file_path") && frame["file_path"].is_string();
@@ -224,12 +226,7 @@ Dataset read_transforms(const Path& path) {
     added.image = image_within(path, frame["file_path"].get<std::string>());
     added.world_from_camera = pose_of_frame(frame, path, added.image);
     added.sharpness = keys.number("sharpness");
-    const core::CameraModel camera = camera_of_frame(keys, path);
-    const auto same =
-        std::find_if(dataset.cameras.begin(), dataset.cameras.end(),
-                     [&](const auto& known) { return known.intrinsics() == camera.intrinsics(); });
-    added.camera = static_cast<std::size_t>(same - dataset.cameras.begin());
-    if (same == dataset.cameras.end()) dataset.cameras.push_back(camera);
+    added.camera = cameras.add(camera_of_frame(keys, path), dataset.cameras);
     dataset.frames.push_back(std::move(added));
   }
   if (dataset.frames.empty()) refuse_transforms(path, "has no frames");

@@ -36,6 +36,9 @@ class AviWriter {
   /// Waits until the disk has everything; from any thread. Returns 0 or errno.
   [[nodiscard]] int flush() const { return file_.flush(); }
 
+  /// Of the file.
+  [[nodiscard]] std::uint64_t bytes() const { return end_; }
+
  private:
   /// One RIFF list, its sizes open while it is the last.
   struct Segment {

@@ -2,6 +2,7 @@
 #include "capture/session/camera_recording.h"
 
 #include "capture/session/frame_stamps.h"
+#include "capture/session/live_video.h"
 #include "capture/source/avi_reader.h"
 #include "capture/source/image_check.h"
 #include "capture/source/jpeg_decoder.h"
@@ -58,10 +59,10 @@ class LiveFrames : public FrameSource {
   std::optional<Frame> next_unrecorded() {
     // First what was taken to be recorded, then what came after the fault.
     while (const auto image = recording_.recorder_.next_unwritten()) {
-      if (auto frame = decode(*image->jpeg, image->time_us)) return frame;
+      if (auto frame = decode(*image->bytes, image->time_us)) return frame;
     }
     while (const auto image = recording_.next_unrecorded()) {
-      if (auto frame = decode(*image->jpeg, image->time_us)) return frame;
+      if (auto frame = decode(*image->bytes, image->time_us)) return frame;
     }
     return std::nullopt;
   }
@@ -89,6 +90,8 @@ void CameraRecording::stop() {
 }
 
 std::unique_ptr<FrameSource> CameraRecording::frames() {
+  const CameraDescription camera = status().description;
+  if (camera.video) return open_live_video(recorder_, camera);
   return std::make_unique<LiveFrames>(*this);
 }
 
@@ -127,26 +130,34 @@ void CameraRecording::record(const std::stop_token& stop) {
 
 bool CameraRecording::is_over() const {
   if (terms_.is_enough && terms_.is_enough()) return true;
+  // Pictures of a video that are not in the file are of no use to those that follow.
+  if (has_disk_fault_ && camera_->description().video) return true;
   if (terms_.seconds && first_s_ && stamp_seconds(last_us_) >= *terms_.seconds) return true;
   const std::lock_guard lock(mutex_);
   return terms_.frames && status_.taken >= *terms_.frames;
 }
 
 void CameraRecording::take(const CameraBuffer& buffer) {
-  auto jpeg = buffer.format == PixelFormat::mjpeg
-                  ? std::vector<std::uint8_t>(buffer.bytes.begin(), buffer.bytes.end())
-                  : encoder_.encode(buffer);
-  if (jpeg.empty()) {
+  const bool is_compressed =
+      buffer.format == PixelFormat::mjpeg || buffer.format == PixelFormat::video;
+  auto bytes = is_compressed ? std::vector<std::uint8_t>(buffer.bytes.begin(), buffer.bytes.end())
+                             : encoder_.encode(buffer);
+  if (bytes.empty()) {
     const std::lock_guard lock(mutex_);
     ++status_.unreadable;
     return;
   }
   if (!first_s_) first_s_ = buffer.time_s;
-  // Time never goes back, even if a device that came back says so.
-  last_us_ = std::max(last_us_, std::int64_t{std::llround((buffer.time_s - *first_s_) * 1e6)});
-  const LiveImage image{std::make_shared<const std::vector<std::uint8_t>>(std::move(jpeg)),
-                        last_us_, buffer.sequence};
-  const bool is_recorded = recorder_.add(image);
+  const std::int64_t time_us = std::llround((buffer.time_s - *first_s_) * 1e6);
+  last_us_ = std::max(last_us_, time_us);
+  // Time never goes back, even if a device that came back says so; but pictures of a video may be
+  // stored in another order than they are shown.
+  const LiveImage image{std::make_shared<const std::vector<std::uint8_t>>(std::move(bytes)),
+                        buffer.format == PixelFormat::video ? time_us : last_us_, buffer.sequence,
+                        buffer.is_key};
+  needs_key_ = needs_key_ && !image.is_key;
+  const bool is_recorded = !needs_key_ && recorder_.add(image);
+  needs_key_ = !is_recorded;  // what needs a lost picture is lost with it
   const bool has_fault = report_disk_fault();
 
   const std::lock_guard lock(mutex_);

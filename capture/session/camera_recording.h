@@ -56,8 +56,8 @@ class CameraRecording {
 
   /// Every recorded frame, the way a replay reads it: from the file, as it grows. Whoever is slow
   /// catches up later. After a fault of the disk come all frames that were taken to be recorded;
-  /// those taken later go on, unrecorded, and the oldest of them are dropped. `next` waits for
-  /// frames. To be destroyed before the recording.
+  /// those taken later go on, unrecorded, and the oldest of them are dropped; of a compressed video
+  /// none is taken later. `next` waits for frames. To be destroyed before the recording.
   [[nodiscard]] std::unique_ptr<FrameSource> frames();
 
   [[nodiscard]] RecordingStatus status() const;
@@ -78,6 +78,7 @@ class CameraRecording {
   std::optional<double> first_s_;  ///< these two: of the first and last image
   std::int64_t last_us_ = 0;
   bool has_disk_fault_ = false;
+  bool needs_key_ = false;  ///< the last image is not recorded
 
   mutable std::mutex mutex_;
   std::condition_variable has_unrecorded_;

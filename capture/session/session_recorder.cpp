@@ -2,13 +2,12 @@
 #include "capture/session/session_recorder.h"
 
 #include "capture/calibration/camera_file.h"
-#include "capture/session/frame_stamps.h"
+#include "capture/session/jpeg_recording.h"
+#include "capture/session/matroska_recording.h"
 #include "capture/session/session_file.h"
 #include "core/files/staged_output.h"
 
 #include <chrono>
-#include <span>
-#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -20,10 +19,6 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostWaitingBytes = std::size_t{256} << 20;
 constexpr auto kFlushPause =
     std::chrono::milliseconds(500);  // loses at most a second with its work
-
-std::span<const std::uint8_t> bytes_of(std::string_view text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
 
 /// What a recording holds besides images is on the disk before the first of them.
 void flush_files(const fs::path& folder) {
@@ -40,8 +35,9 @@ void refuse_existing(const fs::path& folder) {
 
 }  // namespace
 
-SessionRecorder::SessionRecorder(const fs::path& folder, const SessionSetup& setup, double fps)
-    : folder_(folder) {
+SessionRecorder::SessionRecorder(const fs::path& folder, const SessionSetup& setup, double fps,
+                                 const std::optional<VideoHeader>& video)
+    : folder_(folder), video_name_(video ? "frames.mkv" : "frames.avi") {
   refuse_existing(folder);
   // The folder appears complete; the open files move with it.
   core::StagedOutput staged(folder);
@@ -50,20 +46,20 @@ SessionRecorder::SessionRecorder(const fs::path& folder, const SessionSetup& set
   copy_into_session(setup.board, staged.path() / "board.yaml");
   const std::string mesh = "object" + setup.mesh.extension().string();
   copy_into_session(setup.mesh, staged.path() / mesh);
-  write_session_file(staged.path(), {.video = "frames.avi",
-                                     .stamps = "frames.csv",
-                                     .board = "board.yaml",
-                                     .mesh = mesh,
-                                     .board_from_object = setup.board_from_object});
-  video_.emplace(staged.path() / "frames.avi",
-                 ImageSize{setup.camera.width_px(), setup.camera.height_px()}, fps);
-  stamps_ = FileHandle::create(staged.path() / "frames.csv");
-  const std::string heading = stamps_heading();
-  if (stamps_->write_at(0, bytes_of(heading)) != 0) {
-    throw core::Error(core::Error::Kind::run_failed, folder, "cannot be written",
-                      "free disk space");
+  SessionFile session{.video = video_name_,
+                      .board = "board.yaml",
+                      .mesh = mesh,
+                      .board_from_object = setup.board_from_object};
+  const ImageSize size{setup.camera.width_px(), setup.camera.height_px()};
+  const fs::path path = staged.path() / video_name_;
+  if (video) {
+    video_ = std::make_unique<MatroskaRecording>(path, *video, size);
+  } else {
+    session.stamps = "frames.csv";
+    video_ = std::make_unique<JpegRecording>(path, staged.path() / *session.stamps, size, fps);
   }
-  stamps_end_ = heading.size();
+  written_bytes_ = video_->bytes();
+  write_session_file(staged.path(), session);
   flush_files(staged.path());
   staged.commit();
 
@@ -78,7 +74,7 @@ SessionRecorder::~SessionRecorder() {
 bool SessionRecorder::add(LiveImage image) {
   {
     const std::lock_guard lock(mutex_);
-    const std::size_t bytes = image.jpeg->size();
+    const std::size_t bytes = image.bytes->size();
     if (fault_ || is_closing_ || waiting_bytes_ + bytes > kMostWaitingBytes) return false;
     waiting_bytes_ += bytes;
     waiting_.push_back(std::move(image));
@@ -101,12 +97,20 @@ std::optional<std::int64_t> SessionRecorder::wait_for(int index) const {
   return std::nullopt;
 }
 
+std::optional<std::uint64_t> SessionRecorder::wait_for_more(std::uint64_t bytes) const {
+  std::unique_lock lock(mutex_);
+  const auto none_will_come = [&] { return (fault_ && !is_writing_) || is_closed_; };
+  has_news_.wait(lock, [&] { return bytes < written_bytes_ || none_will_come(); });
+  if (bytes < written_bytes_) return written_bytes_;
+  return std::nullopt;
+}
+
 std::optional<LiveImage> SessionRecorder::next_unwritten() {
   const std::lock_guard lock(mutex_);
   if (!fault_ || is_writing_ || waiting_.empty()) return std::nullopt;
   LiveImage image = std::move(waiting_.front());
   waiting_.pop_front();
-  waiting_bytes_ -= image.jpeg->size();
+  waiting_bytes_ -= image.bytes->size();
   return image;
 }
 
@@ -142,8 +146,9 @@ void SessionRecorder::write_all() {
       const std::lock_guard lock(mutex_);
       is_writing_ = false;
       if (is_written) {
-        waiting_bytes_ -= image.jpeg->size();
+        waiting_bytes_ -= image.bytes->size();
         written_us_.push_back(image.time_us);
+        written_bytes_ = video_->bytes();
       } else {
         waiting_.push_front(std::move(image));  // it was taken, so somebody gets it
       }
@@ -162,19 +167,9 @@ void SessionRecorder::write_all() {
 }
 
 bool SessionRecorder::write(const LiveImage& image) {
-  if (const int status = video_->append(*image.jpeg); status != 0) {
-    set_fault(status);
-    return false;
-  }
-  // An image counts once its stamp is there.
-  const std::string line = stamp_line(written(), image.time_us, image.sequence);
-  if (const int status = stamps_->write_at(stamps_end_, bytes_of(line)); status != 0) {
-    stamps_->truncate(stamps_end_);
-    set_fault(status);
-    return false;
-  }
-  stamps_end_ += line.size();
-  return true;
+  const int status = video_->append(image);
+  if (status != 0) set_fault(status);
+  return status == 0;
 }
 
 void SessionRecorder::flush_until_stopped(const std::stop_token& stop) {
@@ -186,9 +181,7 @@ void SessionRecorder::flush_until_stopped(const std::stop_token& stop) {
 }
 
 void SessionRecorder::flush() {
-  // Images before stamps: a stamp without its image would say nothing.
-  if (const int status = video_->flush(); status != 0) return set_fault(status);
-  if (const int status = stamps_->flush(); status != 0) set_fault(status);
+  if (const int status = video_->flush(); status != 0) set_fault(status);
 }
 
 void SessionRecorder::set_fault(int fault) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "capture/session/avi_writer.h"
+#include "capture/session/recorded_video.h"
+#include "capture/source/camera.h"
 #include "core/diagnostics/error.h"
 #include "core/geometry/camera.h"
 
@@ -27,13 +28,6 @@ struct SessionSetup {
   Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();
 };
 
-/// An image on its way from the camera: shared, since disk, fit and screen take it at their pace.
-struct LiveImage {
-  std::shared_ptr<const std::vector<std::uint8_t>> jpeg;
-  std::int64_t time_us = 0;    ///< since the first image
-  std::uint32_t sequence = 0;  ///< the camera's own count
-};
-
 /// Records a session that survives a crash. The folder opens as a session before the first image;
 /// images and their time stamps are appended as they come and flushed to the disk twice a second.
 /// After a crash all but the last second is there. Whoever adds images never waits for the disk:
@@ -42,7 +36,9 @@ class SessionRecorder {
  public:
   /// Makes the folder. Throws core::Error: bad_input when it holds something already or a part of
   /// `setup` cannot be read, run_failed when the disk is full.
-  SessionRecorder(const std::filesystem::path& folder, const SessionSetup& setup, double fps);
+  /// `video`: what the images are pictures of; nothing for JPEG images.
+  SessionRecorder(const std::filesystem::path& folder, const SessionSetup& setup, double fps,
+                  const std::optional<VideoHeader>& video = std::nullopt);
   ~SessionRecorder();
   SessionRecorder(const SessionRecorder&) = delete;
   SessionRecorder& operator=(const SessionRecorder&) = delete;
@@ -60,8 +56,12 @@ class SessionRecorder {
   /// be.
   [[nodiscard]] std::optional<std::int64_t> wait_for(int index) const;
 
-  /// After a fault, once `wait_for` has nothing more: the next of the images that were taken but
-  /// never came to the disk, in the order of `add`; nothing when there is none.
+  /// Waits until the video's file holds more than `bytes` and returns how many; nothing when it
+  /// never will.
+  [[nodiscard]] std::optional<std::uint64_t> wait_for_more(std::uint64_t bytes) const;
+
+  /// After a fault, once `wait_for` and `wait_for_more` have nothing more: the next of the images
+  /// that were taken but never came to the disk, in the order of `add`; nothing when there is none.
   [[nodiscard]] std::optional<LiveImage> next_unwritten();
 
   /// Images in the file.
@@ -70,7 +70,7 @@ class SessionRecorder {
   /// Writes what waits and completes the file; nothing can be added any more.
   void close();
 
-  [[nodiscard]] std::filesystem::path video() const { return folder_ / "frames.avi"; }
+  [[nodiscard]] std::filesystem::path video() const { return folder_ / video_name_; }
 
  private:
   void write_all();
@@ -80,9 +80,8 @@ class SessionRecorder {
   void set_fault(int fault);
 
   std::filesystem::path folder_;
-  std::optional<AviWriter> video_;  ///< these two: of the writing thread
-  std::optional<FileHandle> stamps_;
-  std::uint64_t stamps_end_ = 0;
+  std::string video_name_;
+  std::unique_ptr<RecordedVideo> video_;  ///< of the writing thread
 
   mutable std::mutex mutex_;
   mutable std::condition_variable has_news_;
@@ -93,6 +92,7 @@ class SessionRecorder {
   std::size_t waiting_bytes_ = 0;
   bool is_writing_ = false;               ///< an image is neither in `waiting_` nor in the file
   std::vector<std::int64_t> written_us_;  ///< times of the images in the file
+  std::uint64_t written_bytes_ = 0;       ///< of the file
   std::optional<core::Error> fault_;
   bool is_closing_ = false;
   bool is_closed_ = false;

@@ -6,11 +6,19 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace sheen::capture {
 
-/// How a camera packs an image: JPEG, 4:2:2 as Y U Y V, or a plane of Y and one of U V at 4:2:0.
-enum class PixelFormat { mjpeg, yuyv, nv12 };
+/// How a camera packs an image: JPEG, 4:2:2 as Y U Y V, a plane of Y and one of U V at 4:2:0, or a
+/// picture of a compressed video, which needs those before it.
+enum class PixelFormat { mjpeg, yuyv, nv12, video };
+
+/// What a decoder has to know of a compressed video before its first picture.
+struct VideoHeader {
+  std::string codec;                ///< FFmpeg's name: h264 or hevc
+  std::vector<std::uint8_t> setup;  ///< parameter sets, Annex B
+};
 
 /// One image as the camera's own bytes.
 struct CameraBuffer {
@@ -21,6 +29,7 @@ struct CameraBuffer {
   int bytes_per_line = 0;      ///< of raw formats, padding included; 0: none
   double time_s = 0;           ///< of the exposure, on the kernel's monotonic clock
   std::uint32_t sequence = 0;  ///< the driver's count, images it lost included
+  bool is_key = true;          ///< can be decoded without those before it
 };
 
 /// What a camera was set to.
@@ -30,7 +39,8 @@ struct CameraDescription {
   PixelFormat format = PixelFormat::mjpeg;
   int width_px = 0;
   int height_px = 0;
-  double fps = 0;  ///< nominal, > 0
+  double fps = 0;                                   ///< nominal, > 0
+  std::optional<VideoHeader> video = std::nullopt;  ///< of PixelFormat::video
 };
 
 /// What went wrong on the way and was got over.

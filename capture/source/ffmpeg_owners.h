@@ -17,6 +17,13 @@ struct CloseInput {
 struct CloseBytes {
   void operator()(AVIOContext* bytes) const { avio_closep(&bytes); }
 };
+/// Of avio_alloc_context, which FFmpeg never frees.
+struct FreeBytesOfOurs {
+  void operator()(AVIOContext* bytes) const {
+    av_freep(&bytes->buffer);
+    avio_context_free(&bytes);
+  }
+};
 struct FreeCodec {
   void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
 };
@@ -28,6 +35,7 @@ struct FreePacket {
 };
 using InputPtr = std::unique_ptr<AVFormatContext, CloseInput>;
 using BytesPtr = std::unique_ptr<AVIOContext, CloseBytes>;
+using BytesOfOursPtr = std::unique_ptr<AVIOContext, FreeBytesOfOurs>;
 using CodecPtr = std::unique_ptr<AVCodecContext, FreeCodec>;
 using FramePtr = std::unique_ptr<AVFrame, FreeFrame>;
 using PacketPtr = std::unique_ptr<AVPacket, FreePacket>;

@@ -3,7 +3,6 @@
 
 #include "capture/source/ffmpeg_owners.h"
 #include "capture/source/jpeg_decoder.h"
-#include "core/text/lower_case.h"
 #include "core/text/number.h"
 
 extern "C" {
@@ -22,55 +21,7 @@ int asks_to_give_up(void* gives_up) {
   return (*static_cast<const std::function<bool()>*>(gives_up))() ? 1 : 0;
 }
 
-std::string error_text(int status) {
-  std::array<char, AV_ERROR_MAX_STRING_SIZE> text{};
-  return av_strerror(status, text.data(), text.size()) == 0 ? text.data() : "unknown fault";
-}
-
-NetworkFault connection_fault(int status) {
-  switch (status) {
-    case AVERROR_EXIT:
-    case AVERROR(ETIMEDOUT):
-      return {"gives no answer", "check that it is switched on and in this network", false};
-    case AVERROR(ECONNREFUSED):
-      return {"refuses the connection", "start the app or server on it; check the port", false};
-    case AVERROR(EHOSTUNREACH):
-    case AVERROR(ENETUNREACH):
-      return {"cannot be reached", "check that both are in one network", false};
-    case AVERROR_HTTP_UNAUTHORIZED:
-    case AVERROR_HTTP_FORBIDDEN:
-      return {"wants a user and a password, or others",
-              "write them into the address: http://USER:PASSWORD@...", true};
-    case AVERROR_HTTP_NOT_FOUND:
-      return {"has nothing under this path", kCheckAddress, true};
-    case AVERROR_PROTOCOL_NOT_FOUND:
-      return {"leads to a protocol that is not read", "give an address of http:// or https://",
-              true};
-    default:
-      return {"cannot be opened: " + error_text(status), kCheckAddress, false};
-  }
-}
-
 }  // namespace
-
-bool is_network_address(const std::string& address) {
-  const std::string scheme = core::lower_case(address.substr(0, address.find("://")));
-  return address.size() > scheme.size() &&
-         (scheme == "http" || scheme == "https" || scheme == "rtsp");
-}
-
-std::string shown_address(const std::string& address) {
-  const std::size_t scheme = address.find("://");
-  if (scheme == std::string::npos) return address;
-  const std::size_t begin = scheme + 3;
-  const std::size_t end = std::min(address.find_first_of("/?#", begin), address.size());
-  const std::size_t at = address.rfind('@');
-  // An @ behind the host may belong to a password with a letter that ends the host.
-  if (at != std::string::npos && at > end) return address.substr(0, begin) + "...";
-  const std::size_t host = at == std::string::npos ? begin : at + 1;
-  const std::size_t query = std::min(address.find_first_of("?#", host), address.size());
-  return core::quotable(address.substr(0, begin) + address.substr(host, query - host), 200);
-}
 
 struct HttpImages::Impl {
   std::function<bool()> gives_up;
@@ -135,7 +86,7 @@ HttpImages::HttpImages(const std::string& address, std::function<bool()> gives_u
 
 HttpImages::~HttpImages() = default;
 
-bool HttpImages::next(std::vector<std::uint8_t>& jpeg) {
+bool HttpImages::next(NetworkImage& image) {
   // Not before: it waits for the first image, and that wait tells a fresh one from a stale one.
   if (!impl_->input) impl_->read_first_boundary();
   AVPacket& packet = *impl_->packet;
@@ -153,8 +104,10 @@ bool HttpImages::next(std::vector<std::uint8_t>& jpeg) {
     av_packet_unref(&packet);
     throw NetworkFault("sends images of impossible size", kCheckAddress, true);
   }
-  jpeg.assign(packet.data, packet.data + packet.size);
-  const bool is_whole = (packet.flags & AV_PKT_FLAG_CORRUPT) == 0 && jpeg_size(jpeg).has_value();
+  image.bytes.assign(packet.data, packet.data + packet.size);
+  const auto size = jpeg_size(image.bytes);
+  const bool is_whole = (packet.flags & AV_PKT_FLAG_CORRUPT) == 0 && size.has_value();
+  image.size = size.value_or(ImageSize{});
   av_packet_unref(&packet);
   return is_whole;
 }

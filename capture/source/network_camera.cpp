@@ -2,7 +2,8 @@
 #include "capture/source/network_camera.h"
 
 #include "capture/source/http_images.h"
-#include "capture/source/jpeg_decoder.h"
+#include "capture/source/network_address.h"
+#include "capture/source/rtsp_pictures.h"
 
 #include <fmt/format.h>
 
@@ -31,7 +32,7 @@ core::Error error_of(const std::string& address, const NetworkFault& fault) {
 NetworkCamera::NetworkCamera(const NetworkCameraOptions& options) : options_(options) {
   description_.device = shown_address(options_.address);
   description_.name = description_.device;
-  description_.format = PixelFormat::mjpeg;
+  description_.format = is_rtsp_address(options_.address) ? PixelFormat::video : PixelFormat::mjpeg;
   description_.fps = kNominalFps;
   receiver_ = std::jthread([this](const std::stop_token& stop) { receive(stop); });
   std::unique_lock lock(mutex_);
@@ -50,14 +51,15 @@ std::optional<CameraBuffer> NetworkCamera::next(std::chrono::milliseconds timeou
   }
   current_ = std::move(waiting_.front());
   waiting_.pop_front();
-  waiting_bytes_ -= current_.jpeg.size();
+  waiting_bytes_ -= current_.bytes.size();
   CameraBuffer buffer;
-  buffer.format = PixelFormat::mjpeg;
-  buffer.bytes = current_.jpeg;
+  buffer.format = description_.format;
+  buffer.bytes = current_.bytes;
   buffer.width_px = description_.width_px;
   buffer.height_px = description_.height_px;
   buffer.time_s = current_.time_s;
   buffer.sequence = current_.sequence;
+  buffer.is_key = current_.is_key;
   return buffer;
 }
 
@@ -93,56 +95,84 @@ void NetworkCamera::receive(const std::stop_token& stop) {
   }
 }
 
+/// Makes a connection; `gives_up` as those ask it.
+std::unique_ptr<NetworkImages> NetworkCamera::connect(std::function<bool()> gives_up) {
+  if (description_.format == PixelFormat::mjpeg) {
+    return std::make_unique<HttpImages>(options_.address, std::move(gives_up));
+  }
+  auto pictures = std::make_unique<RtspPictures>(options_.address, std::move(gives_up));
+  const std::lock_guard lock(mutex_);
+  if (!description_.video) description_.video = pictures->header();
+  if (description_.video->codec != pictures->header().codec) {
+    throw core::Error(
+        core::Error::Kind::run_failed, description_.device,
+        fmt::format("sends {} now, {} before", pictures->header().codec, description_.video->codec),
+        "keep its settings");
+  }
+  return pictures;
+}
+
 void NetworkCamera::receive_from_one_connection(const std::stop_token& stop) {
   const double asked_s = steady_now_s();
   double until_s = asked_s + options_.answer_s;
-  HttpImages images(options_.address,
-                    [&] { return stop.stop_requested() || steady_now_s() > until_s; });
-  clock_.restart();
+  const auto images = connect([&] { return stop.stop_requested() || steady_now_s() > until_s; });
+  arrival_clock_.restart();
+  stream_clock_.restart();
   const double connected_s = steady_now_s();
   bool is_stale = true;
+  // What lay ready since the newest image that can be decoded by itself: those that follow may need
+  // it. JPEG images need none.
+  std::vector<Arrival> ready;
   while (true) {
     const double waiting_s = steady_now_s();
-    std::vector<std::uint8_t> jpeg;
-    const bool is_whole = images.next(jpeg);
-    const double arrival_s = steady_now_s();
-    is_stale = is_stale && arrival_s - waiting_s < options_.stale_s &&
-               arrival_s - connected_s < kMostStale_s;
-    if (is_stale) continue;
-    if (is_whole) {
-      until_s = arrival_s + options_.silence_s;
-      take(std::move(jpeg), arrival_s);
-    } else {
-      note_damaged();
+    Arrival arrival;
+    const bool is_whole = images->next(arrival.image);
+    arrival.time_s = steady_now_s();
+    is_stale = is_stale && arrival.time_s - waiting_s < options_.stale_s &&
+               arrival.time_s - connected_s < kMostStale_s;
+    if (!is_whole) {
+      if (!is_stale) note_damaged();
+      continue;
     }
+    until_s = arrival.time_s + options_.silence_s;
+    if (arrival.image.stamp_s) stream_clock_.note(*arrival.image.stamp_s, arrival.time_s);
+    if (arrival.image.is_key) ready.clear();
+    ready.push_back(std::move(arrival));
+    if (is_stale) continue;
+    for (Arrival& image : ready) take(std::move(image));
+    ready.clear();
   }
 }
 
-void NetworkCamera::take(std::vector<std::uint8_t> jpeg, double arrival_s) {
-  const ImageSize size = *jpeg_size(jpeg);
+void NetworkCamera::take(Arrival arrival) {
+  NetworkImage& image = arrival.image;
   const std::lock_guard lock(mutex_);
   if (last_image_s_ == 0) {
-    description_.width_px = size.width_px;
-    description_.height_px = size.height_px;
+    description_.width_px = image.size.width_px;
+    description_.height_px = image.size.height_px;
   }
-  if (!(size == ImageSize{description_.width_px, description_.height_px})) {
-    throw core::Error(core::Error::Kind::run_failed, description_.device,
-                      fmt::format("sends {}x{} images now, {}x{} before", size.width_px,
-                                  size.height_px, description_.width_px, description_.height_px),
-                      "keep its settings, and the phone as it was held");
+  if (!(image.size == ImageSize{description_.width_px, description_.height_px})) {
+    throw core::Error(
+        core::Error::Kind::run_failed, description_.device,
+        fmt::format("sends {}x{} images now, {}x{} before", image.size.width_px,
+                    image.size.height_px, description_.width_px, description_.height_px),
+        "keep its settings, and the phone as it was held");
   }
   counts_.reconnections += is_away_ ? 1 : 0;
   is_away_ = false;
-  last_image_s_ = arrival_s;
-  const double time_s = clock_.time_of(arrival_s);
+  last_image_s_ = arrival.time_s;
+  const double time_s = image.stamp_s ? stream_clock_.time_of(*image.stamp_s)
+                                      : arrival_clock_.time_of(arrival.time_s);
   ++sequence_;
-  if (!waiting_.empty() &&
-      waiting_bytes_ + jpeg.size() > kMostWaitingBytes) {  // nobody takes them any more
+  // Nobody takes them any more. What needs a lost image is lost with it.
+  const bool is_full = !waiting_.empty() && waiting_bytes_ + image.bytes.size() > kMostWaitingBytes;
+  needs_key_ = (needs_key_ && !image.is_key) || is_full;
+  if (needs_key_) {
     ++counts_.lost;
     return;
   }
-  waiting_bytes_ += jpeg.size();
-  waiting_.push_back({std::move(jpeg), time_s, sequence_});
+  waiting_bytes_ += image.bytes.size();
+  waiting_.push_back({std::move(image.bytes), time_s, sequence_, image.is_key});
   has_news_.notify_all();
 }
 

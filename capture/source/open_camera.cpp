@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "capture/source/open_camera.h"
 
-#include "capture/source/http_images.h"
+#include "capture/source/network_address.h"
 #include "capture/source/network_camera.h"
 
 namespace sheen::capture {
@@ -10,10 +10,6 @@ std::unique_ptr<Camera> open_camera(const V4l2CameraOptions& wish) {
   const std::string address = wish.device.string();
   if (!is_network_address(address)) {
     return std::make_unique<V4l2Camera>(kernel_v4l2_system(), wish);
-  }
-  if (address.starts_with("rtsp://")) {
-    throw core::bad_input(shown_address(address), "is a stream by RTSP, which is not recorded",
-                          "give the address of its MJPEG video, often http://.../video");
   }
   if (wish.mode.size || wish.mode.fps || wish.mode.format || !wish.controls.empty()) {
     throw core::bad_input(shown_address(address),

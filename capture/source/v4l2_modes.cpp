@@ -107,6 +107,8 @@ int bytes_rank(PixelFormat format) {
       return 1;
     case PixelFormat::yuyv:
       return 2;
+    case PixelFormat::video:
+      break;
   }
   return 3;
 }
@@ -177,6 +179,8 @@ std::uint32_t fourcc(PixelFormat format) {
       return V4L2_PIX_FMT_YUYV;
     case PixelFormat::nv12:
       return V4L2_PIX_FMT_NV12;
+    case PixelFormat::video:
+      break;
   }
   return 0;
 }
@@ -202,6 +206,8 @@ std::string format_name(PixelFormat format) {
       return "YUYV";
     case PixelFormat::nv12:
       return "NV12";
+    case PixelFormat::video:
+      break;
   }
   return "?";
 }

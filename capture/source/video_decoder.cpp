@@ -10,6 +10,7 @@ extern "C" {
 
 #include <cmath>
 #include <cstring>
+#include <exception>
 #include <limits>
 #include <set>
 #include <string>
@@ -19,6 +20,7 @@ namespace {
 
 constexpr double kMostStatedFrames = 1e8;
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
+constexpr int kBytesAtOnce = 1 << 15;
 constexpr std::size_t kMostPending = 256;  // packets whose picture is not out yet
 constexpr int kMostFaults = 1000;  // in a row, without a packet: the decoder has lost itself
 
@@ -26,16 +28,48 @@ core::Error undecodable(const std::filesystem::path& path) {
   return core::bad_input(path, "cannot be decoded as a video", "check that it is complete");
 }
 
-InputPtr open_input(const std::filesystem::path& path) {
+/// The bytes of a growing video, as FFmpeg reads them; nothing may be thrown through FFmpeg.
+struct GrowingInput {
+  VideoBytes* bytes = nullptr;
+  std::exception_ptr fault;
+  BytesOfOursPtr context;
+
+  static int read(void* opaque, std::uint8_t* bytes, int count) {
+    auto& self = *static_cast<GrowingInput*>(opaque);
+    try {
+      const std::size_t taken = self.bytes->read({bytes, static_cast<std::size_t>(count)});
+      return taken > 0 ? static_cast<int>(taken) : AVERROR_EOF;
+    } catch (...) {
+      self.fault = std::current_exception();
+      return AVERROR_EXTERNAL;
+    }
+  }
+
+  void rethrow() const {
+    if (fault) std::rethrow_exception(fault);
+  }
+};
+
+/// `growing` null: the file itself.
+InputPtr open_input(const std::filesystem::path& path, GrowingInput* growing) {
   // Faults of files are told by us, in one line.
   av_log_set_level(AV_LOG_QUIET);
+  AVFormatContext* context = avformat_alloc_context();
+  if (context == nullptr) throw std::bad_alloc();
+  // With the protocol before it a colon in the name is a letter like any other.
+  std::string name = "file:" + path.string();
+  if (growing != nullptr) {
+    growing->context.reset(avio_alloc_context(static_cast<std::uint8_t*>(av_malloc(kBytesAtOnce)),
+                                              kBytesAtOnce, 0, growing, &GrowingInput::read,
+                                              nullptr, nullptr));
+    context->pb = growing->context.get();
+    name.clear();
+  }
   AVDictionary* options = nullptr;
   av_dict_set(&options, "protocol_whitelist", "file", 0);
-  AVFormatContext* context = nullptr;
-  // With the protocol before it a colon in the name is a letter like any other.
-  const int status =
-      avformat_open_input(&context, ("file:" + path.string()).c_str(), nullptr, &options);
+  const int status = avformat_open_input(&context, name.c_str(), nullptr, &options);
   av_dict_free(&options);
+  if (growing != nullptr) growing->rethrow();
   if (status < 0) throw undecodable(path);
   InputPtr input(context);
   if (avformat_find_stream_info(context, nullptr) < 0) throw undecodable(path);
@@ -103,7 +137,7 @@ std::optional<int> shown_pictures(const AVFormatContext& input, AVStream& stream
 }  // namespace
 
 struct VideoDecoder::Impl {
-  explicit Impl(const std::filesystem::path& video);
+  Impl(const std::filesystem::path& video, VideoBytes* bytes);
 
   bool decode();
   void read_packet();
@@ -113,6 +147,7 @@ struct VideoDecoder::Impl {
   void fill_in_colours();
 
   std::filesystem::path path;
+  GrowingInput growing;
   InputPtr input;
   int stream_index = -1;
   CodecPtr codec;
@@ -131,8 +166,8 @@ struct VideoDecoder::Impl {
   double time_s = 0;
 };
 
-VideoDecoder::Impl::Impl(const std::filesystem::path& video)
-    : path(video), input(open_input(video)) {
+VideoDecoder::Impl::Impl(const std::filesystem::path& video, VideoBytes* bytes)
+    : path(video), growing{bytes, {}, {}}, input(open_input(video, bytes ? &growing : nullptr)) {
   const AVCodec* decoder = nullptr;
   stream_index = av_find_best_stream(input.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
   if (stream_index < 0 || decoder == nullptr || !packet || !frame) throw undecodable(path);
@@ -147,6 +182,9 @@ VideoDecoder::Impl::Impl(const std::filesystem::path& video)
   codec->pkt_timebase = stream.time_base;
   codec->max_pixels = kMostPixels;
   codec->thread_count = 0;
+  // Of several pictures at once the damage is found now in time, now too late: what is left out
+  // would be up to chance.
+  codec->thread_type = FF_THREAD_SLICE;
   if (avcodec_open2(codec.get(), decoder, nullptr) < 0) throw undecodable(path);
   facts.size = {stream.codecpar->width, stream.codecpar->height};
   facts.fps = usable_rate(stream.avg_frame_rate, stream.time_base);
@@ -263,6 +301,7 @@ bool VideoDecoder::Impl::decode() {
       has_ended = status == AVERROR_EOF || ++faults > kMostFaults;
     }
   }
+  growing.rethrow();
   // Packets whose picture never came.
   damaged += index < 0 ? 0 : static_cast<int>(pending.size());
   pending.clear();
@@ -270,7 +309,10 @@ bool VideoDecoder::Impl::decode() {
 }
 
 VideoDecoder::VideoDecoder(const std::filesystem::path& path)
-    : impl_(std::make_unique<Impl>(path)) {}
+    : impl_(std::make_unique<Impl>(path, nullptr)) {}
+
+VideoDecoder::VideoDecoder(const std::filesystem::path& name, VideoBytes& bytes)
+    : impl_(std::make_unique<Impl>(name, &bytes)) {}
 
 VideoDecoder::~VideoDecoder() = default;
 VideoDecoder::VideoDecoder(VideoDecoder&&) noexcept = default;

@@ -3,6 +3,7 @@
 
 #include "capture/source/frame_range.h"
 #include "capture/source/quarter_turn.h"
+#include "capture/source/video_bytes.h"
 
 #include <filesystem>
 #include <memory>
@@ -27,6 +28,9 @@ class VideoDecoder {
  public:
   /// Throws core::Error (bad_input) for what cannot be decoded.
   explicit VideoDecoder(const std::filesystem::path& path);
+  /// Of a video that still grows, called `name` in messages; `bytes` is borrowed. Waits until there
+  /// is enough to know the video. What `bytes` throws is thrown here and by `next`.
+  VideoDecoder(const std::filesystem::path& name, VideoBytes& bytes);
   ~VideoDecoder();
   VideoDecoder(VideoDecoder&&) noexcept;
   VideoDecoder& operator=(VideoDecoder&&) noexcept;

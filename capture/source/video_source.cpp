@@ -28,12 +28,12 @@ constexpr int kMaxSidePx = 1 << 15;
 /// Any codec, by FFmpeg.
 class VideoSource : public FrameSource {
  public:
-  VideoSource(const std::filesystem::path& path, const ImageSize& size, const FrameRange& range,
-              std::optional<double> fps)
+  VideoSource(const std::filesystem::path& path, VideoDecoder decoder, const ImageSize& size,
+              const FrameRange& range, std::optional<double> fps)
       : path_(path),
         size_(size),
         range_(range),
-        decoder_(path),
+        decoder_(std::move(decoder)),
         file_fps_(decoder_.facts().fps.value_or(fps.value_or(kFallbackFps))),
         promised_(decoder_.facts().frames),
         rate_(fps) {
@@ -143,7 +143,13 @@ std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, const
                                         const FrameRange& range, std::optional<double> fps) {
   check_is_file(path);
   if (auto source = open_motion_jpeg(path, size, range, fps)) return source;
-  return read_ahead(std::make_unique<VideoSource>(path, size, range, fps));
+  return read_ahead(std::make_unique<VideoSource>(path, VideoDecoder(path), size, range, fps));
+}
+
+std::unique_ptr<FrameSource> open_growing_video(const std::filesystem::path& name,
+                                                VideoBytes& bytes, const ImageSize& size) {
+  return std::make_unique<VideoSource>(name, VideoDecoder(name, bytes), size, FrameRange{},
+                                       std::nullopt);
 }
 
 }  // namespace sheen::capture

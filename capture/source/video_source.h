@@ -3,6 +3,7 @@
 
 #include "capture/source/frame_range.h"
 #include "capture/source/frame_source.h"
+#include "capture/source/video_bytes.h"
 
 #include <filesystem>
 #include <memory>
@@ -22,6 +23,12 @@ namespace sheen::capture {
 /// the two only is no fault).
 std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, const ImageSize& size,
                                         const FrameRange& range, std::optional<double> fps);
+
+/// The same of a video that is still being recorded, called `name` in messages: frames come as
+/// `bytes` grows, some behind, and are those that open_video gives of the finished file. Waits for
+/// the first. `bytes` is borrowed; what it throws is thrown here and by `next()`.
+std::unique_ptr<FrameSource> open_growing_video(const std::filesystem::path& name,
+                                                VideoBytes& bytes, const ImageSize& size);
 
 /// Size of a video's stored pixels. Throws core::Error (bad_input).
 ImageSize stored_video_size(const std::filesystem::path& path);

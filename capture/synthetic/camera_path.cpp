@@ -91,4 +91,15 @@ CameraPath::Options held_out_path(std::uint32_t seed) {
   return options;
 }
 
+CameraPath::Options turntable_path(double start_deg) {
+  constexpr double elevation_deg = 20;
+  CameraPath::Options options;
+  options.turns = 1;
+  options.lowest_deg = options.highest_deg = elevation_deg;
+  options.start_deg = start_deg;
+  options.distance_sway = 0;
+  options.shake = 0;
+  return options;
+}
+
 }  // namespace sheen::capture::synthetic

@@ -41,10 +41,14 @@ class CameraPath {
   std::array<std::array<double, 3>, kChannels> phases_{};
 };
 
-/// The recording: a spiral of three rounds upwards through the band of elevations.
+/// A walk's recording: a spiral of three rounds upwards through the band of elevations.
 CameraPath::Options recording_path(std::uint32_t seed);
 
 /// The views held out: one round that weaves through the same band, within what the recording saw.
 CameraPath::Options held_out_path(std::uint32_t seed);
+
+/// As an object on a turntable is seen by a camera that stands still: one round at one elevation,
+/// without tremor.
+CameraPath::Options turntable_path(double start_deg);
 
 }  // namespace sheen::capture::synthetic

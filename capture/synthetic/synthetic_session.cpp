@@ -78,9 +78,10 @@ void write_common(const fs::path& folder, const Scene& scene, const SyntheticOpt
 
 void write_recording(const fs::path& folder, const Scene& scene, const core::CameraModel& camera,
                      const SyntheticOptions& options, Counter& counter) {
-  const CameraPath path(recording_path(options.seed), scene.object_centre(),
-                        scene.object_radius_m());
-  const std::vector<Trajectory::Entry> poses = walk(path, options.frames, false);
+  const bool turns = options.path == PathKind::turntable;
+  const CameraPath path(turns ? turntable_path(0) : recording_path(options.seed),
+                        scene.object_centre(), scene.object_radius_m());
+  const std::vector<Trajectory::Entry> poses = walk(path, options.frames, turns);
   write_common(folder, scene, options, camera,
                {.video = "frames.avi", .fps = kFps, .board = "board.yaml"});
   write_board(folder / "board.yaml", scene.board());
@@ -101,8 +102,9 @@ void write_recording(const fs::path& folder, const Scene& scene, const core::Cam
 
 void write_held_out(const fs::path& folder, const Scene& scene, const core::CameraModel& camera,
                     const SyntheticOptions& options, Counter& counter) {
-  const CameraPath path(held_out_path(options.seed), scene.object_centre(),
-                        scene.object_radius_m());
+  const CameraPath path(options.path == PathKind::turntable ? turntable_path(180.0 / options.frames)
+                                                            : held_out_path(options.seed),
+                        scene.object_centre(), scene.object_radius_m());
   const std::vector<Trajectory::Entry> poses = walk(path, options.held_out, true);
   fs::create_directories(folder / "images");
   write_common(folder, scene, options, camera, {.images = "images/%04d.png", .poses = "poses.txt"});

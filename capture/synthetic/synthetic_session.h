@@ -12,13 +12,21 @@
 
 namespace sheen::capture::synthetic {
 
+/// How the object is seen from all round.
+enum class PathKind {
+  walk,       ///< a camera in hand goes round it three times
+  turntable,  ///< it turns once before a camera that stands still; held-out views lie half way
+              ///< between frames
+};
+
 /// A recording of an object that exists only in numbers.
 struct SyntheticOptions {
   SceneKind scene = SceneKind::glossy;
   int vertices = 10'000;                      ///< of the knot, [500, 2000000]
   std::optional<std::filesystem::path> mesh;  ///< a mesh of one's own instead of the knot, metres
-  int mesh_vertices = 0;   ///< of the knot as the session's mesh has it, [500, 2000000]; 0: as
-                           ///< photographed; without effect on a mesh of one's own
+  int mesh_vertices = 0;  ///< of the knot as the session's mesh has it, [500, 2000000]; 0: as
+                          ///< photographed; without effect on a mesh of one's own
+  PathKind path = PathKind::walk;
   int width_px = 640;      ///< [160, 4096]
   int height_px = 360;     ///< [120, 4096]
   int frames = 120;        ///< of the recording, [2, 100000]

@@ -205,7 +205,8 @@ Information measure(const Board& board, const State& state) {
   Information information;
   // A small tag above the board's origin tells how heights follow the lens.
   const double height_m = half_extent_m(board);
-  const Parameters raised{0, 0, 0, 0, 0, height_m};
+  // Six numbers, in room for more: the compiler warns of what WalkResidual would read from it.
+  const LensParameters raised{0, 0, 0, 0, 0, height_m};
   const TagDetection nowhere{0, {}, 0};
   const std::unique_ptr<ceres::CostFunction> raised_tag(
       tag_and_lens_residual(core::LensKind::rational, nowhere, 0.1 * height_m));

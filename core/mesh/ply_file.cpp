@@ -182,10 +182,24 @@ std::string header_text(const Mesh& mesh, const std::string& coordinate, bool ha
   text += "element vertex " + std::to_string(mesh.positions.size()) + "\n";
   for (const char* name : {"x", "y", "z"}) text += "property " + coordinate + " " + name + "\n";
   for (const char* name : {"nx", "ny", "nz"}) text += std::string("property float ") + name + "\n";
-  if (has_confidence) text += "property float confidence\n";
+  if (has_confidence) {
+    text += "property float confidence\n";
+    for (const char* name : {"red", "green", "blue"}) {
+      text += std::string("property uchar ") + name + "\n";
+    }
+  }
   text += "element face " + std::to_string(mesh.triangles.size()) + "\n";
   text += "property list uchar int vertex_indices\nend_header\n";
   return text;
+}
+
+/// A number in [0, 1] as a colour that every viewer shows: red, over yellow, green. R, G, B.
+std::array<std::uint8_t, 3> confidence_colour(float confidence) {
+  const float share = std::clamp(confidence, 0.0F, 1.0F);
+  const auto channel = [](float value) {
+    return static_cast<std::uint8_t>(std::lround(255 * std::min(value, 1.0F)));
+  };
+  return {channel(2 - 2 * share), channel(2 * share), 0};
 }
 
 /// A mesh with each of its positions as `place` gives it; `confidence` per vertex, or empty.
@@ -198,7 +212,9 @@ std::string ply_bytes(const Mesh& mesh, std::span<const float> confidence,
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     for (const auto value : place(mesh.positions[i])) append_bytes(bytes, value);
     for (const float value : mesh.normals[i]) append_bytes(bytes, value);
-    if (!confidence.empty()) append_bytes(bytes, confidence[i]);
+    if (confidence.empty()) continue;
+    append_bytes(bytes, confidence[i]);
+    for (const std::uint8_t value : confidence_colour(confidence[i])) append_bytes(bytes, value);
   }
   for (const auto& triangle : mesh.triangles) {
     append_bytes(bytes, std::uint8_t{3});

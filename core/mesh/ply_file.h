@@ -17,7 +17,8 @@ MeshFile read_ply(const std::filesystem::path& path);
 
 /// Writes a binary little-endian PLY with normals, beside the final name and then moved into place.
 /// Coordinates are the mesh's own, without its offset. `confidence`, one number per vertex, becomes
-/// a property of that name; it may be empty.
+/// a property of that name and the colour of the vertex, from red (0) over yellow to green (1); it
+/// may be empty.
 void write_ply(const std::filesystem::path& path, const Mesh& mesh,
                std::span<const float> confidence = {});
 

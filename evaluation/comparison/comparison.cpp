@@ -24,6 +24,12 @@ void add(const Measurement& part, Measurement& sum) {
   sum.error.ssim += part.error.ssim;
   sum.error.rmse += part.error.rmse;
   sum.error.pixels += part.error.pixels;
+  sum.worst_psnr_db += part.worst_psnr_db;
+  sum.outline.box_psnr_db += part.outline.box_psnr_db;
+  sum.outline.edge_difference += part.outline.edge_difference;
+  sum.outline.hole_fraction += part.outline.hole_fraction;
+  sum.pop_ratio += part.pop_ratio;
+  sum.drawing_bytes += part.drawing_bytes;
   sum.views += part.views;
   sum.samples += part.samples;
   sum.patches += part.patches;
@@ -38,12 +44,14 @@ void add(const Measurement& part, Measurement& sum) {
 
 void divide(Measurement& sum, std::size_t count) {
   const auto divisor = static_cast<double>(count);
-  for (double* figure : {&sum.error.psnr_db, &sum.live_psnr_db, &sum.error.ssim, &sum.error.rmse,
-                         &sum.fit_ms, &sum.finish_ms, &sum.fit_frame_ms, &sum.render_view_ms}) {
+  for (double* figure :
+       {&sum.error.psnr_db, &sum.live_psnr_db, &sum.error.ssim, &sum.error.rmse, &sum.worst_psnr_db,
+        &sum.outline.box_psnr_db, &sum.outline.edge_difference, &sum.outline.hole_fraction,
+        &sum.pop_ratio, &sum.fit_ms, &sum.finish_ms, &sum.fit_frame_ms, &sum.render_view_ms}) {
     *figure /= divisor;
   }
-  for (std::size_t* figure :
-       {&sum.error.pixels, &sum.views, &sum.samples, &sum.patches, &sum.coefficients}) {
+  for (std::size_t* figure : {&sum.error.pixels, &sum.views, &sum.samples, &sum.patches,
+                              &sum.coefficients, &sum.drawing_bytes}) {
     *figure /= count;
   }
   sum.model_bytes /= count;

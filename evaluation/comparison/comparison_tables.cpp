@@ -22,6 +22,11 @@ nlohmann::ordered_json to_json(const ComparedCandidate& row) {
           {"live_psnr", m.live_psnr_db},
           {"ssim", m.error.ssim},
           {"rmse", m.error.rmse},
+          {"worst_psnr", m.worst_psnr_db},
+          {"box_psnr", m.outline.box_psnr_db},
+          {"edge_difference", m.outline.edge_difference},
+          {"holes", m.outline.hole_fraction},
+          {"pop_ratio", m.pop_ratio},
           {"views", m.views},
           {"samples", m.samples},
           {"patches", m.patches},
@@ -29,6 +34,7 @@ nlohmann::ordered_json to_json(const ComparedCandidate& row) {
           {"coefficients_per_patch", coefficients_per_patch(m)},
           {"model_bytes", m.model_bytes},
           {"light_field_bytes", m.light_field_bytes},
+          {"drawing_bytes", m.drawing_bytes},
           {"fit_ms", m.fit_ms},
           {"finish_ms", m.finish_ms},
           {"fit_ms_per_frame", m.fit_frame_ms},
@@ -61,10 +67,11 @@ std::string csv_value(const nlohmann::ordered_json& value) {
 std::string session_text(const Comparison& comparison, const ComparedSession& session) {
   std::string text = fmt::format(
       "{}: {} frames fitted, {} views held out ({})\n"
-      "  {:<22}{:>9}{:>9}{:>9}{:>9}{:>10}{:>11}{:>10}{:>11}  front\n",
+      "  {:<22}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>9}{:>7}{:>10}{:>10}{:>10}{:>11}  front\n",
       session.name, session.fitted_frames, session.held_out_views,
       session.has_own_held_out ? "the session's own held_out/" : "from its frames", "candidate",
-      "PSNR dB", "live dB", "SSIM", "RMSE", "numbers", "bytes", "fit ms", "render ms");
+      "PSNR dB", "live dB", "worst dB", "box dB", "SSIM", "edge", "holes %", "pop", "KB",
+      "MB drawn", "fit ms", "render ms");
   for (const ComparedCandidate& row : comparison.rows) {
     if (row.session != session.name) continue;
     const Measurement& m = row.measured;
@@ -72,9 +79,12 @@ std::string session_text(const Comparison& comparison, const ComparedSession& se
     if (row.fronts.fit_time) front += " fit";
     if (row.fronts.render_time) front += " render";
     text += fmt::format(
-        "  {:<22}{:>9.2f}{:>9.2f}{:>9.4f}{:>9.4f}{:>10.1f}{:>11}{:>10.1f}{:>11.1f} {}\n",
-        row.candidate.name, m.error.psnr_db, m.live_psnr_db, m.error.ssim, m.error.rmse,
-        coefficients_per_patch(m), m.model_bytes, m.fit_frame_ms, m.render_view_ms, front);
+        "  {:<22}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.2f}{:>9.4f}{:>9.2f}{:>9.2f}{:>7.1f}{:>10.0f}{:>10.1f}"
+        "{:>10.1f}{:>11.1f} {}\n",
+        row.candidate.name, m.error.psnr_db, m.live_psnr_db, m.worst_psnr_db, m.outline.box_psnr_db,
+        m.error.ssim, m.outline.edge_difference, 100 * m.outline.hole_fraction, m.pop_ratio,
+        static_cast<double>(m.model_bytes) / 1e3, static_cast<double>(m.drawing_bytes) / 1e6,
+        m.fit_frame_ms, m.render_view_ms, front);
   }
   return text;
 }

@@ -4,6 +4,7 @@
 #include "core/diagnostics/cpu_clock.h"
 #include "core/diagnostics/stage_timer.h"
 #include "core/mesh/bounds.h"
+#include "evaluation/comparison/smooth_path.h"
 #include "evaluation/views/evaluate_views.h"
 #include "fitting/descriptor.h"
 #include "fitting/model_file/model_file.h"
@@ -11,8 +12,14 @@
 #include "pipeline/texel_size.h"
 #include "render/renderer.h"
 
+#include <malloc.h>
+
+#include <algorithm>
+
 namespace sheen::evaluation {
 namespace {
+
+constexpr double kBest_db = 99;
 
 /// Counts the CPU time of every image a renderer draws.
 class TimedRenderer final : public render::Renderer {
@@ -38,30 +45,83 @@ class TimedRenderer final : public render::Renderer {
   std::vector<double> cpu_ms_;
 };
 
-std::uintmax_t bytes_of(const core::Mesh& mesh, const fitting::LightField& light_field,
-                        const std::filesystem::path& scratch) {
-  fitting::write_model(scratch, mesh, light_field);
-  const std::uintmax_t bytes = std::filesystem::file_size(scratch);
-  std::filesystem::remove(scratch);
-  return bytes;
+/// Bytes that are allocated, of all threads.
+std::size_t allocated_bytes() {
+  const struct mallinfo2 info = mallinfo2();
+  return info.uordblks + info.hblkhd;
 }
 
 struct DrawnViews {
   core::ImageError error;  ///< means
+  double worst_psnr_db;
+  OutlineError outline;  ///< means
   std::size_t count;
   double render_ms;  ///< CPU per view, median
 };
+
+const pipeline::PosedFrame& held_out_frame(const Observations& observations, int index) {
+  return *std::ranges::find(observations.held_out, index, &pipeline::PosedFrame::index);
+}
 
 /// Draws the held-out views and compares.
 DrawnViews draw_views(const fitting::LightField& light_field, const Observations& observations,
                       render::Context& gl, int threads) {
   TimedRenderer renderer(render::make_renderer(gl, observations.mesh, light_field, threads));
   render::Renderer* const renderers[] = {&renderer};
-  const auto summaries =
-      evaluate_views(gl, {observations.held_out_session, observations.mesh, observations.held_out},
-                     renderers, [](const ComparedView&) {});
+  EdgeBand edges(observations.mesh, threads);
+  DrawnViews drawn{{}, kBest_db, {}, 0, 0};
+  const capture::Session& session = observations.held_out_session;
+  const auto summaries = evaluate_views(
+      gl, {session, observations.mesh, observations.held_out}, renderers,
+      [&](const ComparedView& view) {
+        const int index = view.photograph.index;
+        const cv::Mat band = edges.seen_by(
+            session.camera_of(index),
+            held_out_frame(observations, index).camera_from_board * session.board_from_object);
+        const OutlineError error =
+            outline_error(view.rendered[0], view.photograph.image, view.mask, band);
+        drawn.outline.box_psnr_db += error.box_psnr_db;
+        drawn.outline.edge_difference += error.edge_difference;
+        drawn.outline.hole_fraction += error.hole_fraction;
+        drawn.worst_psnr_db = std::min(drawn.worst_psnr_db, view.errors[0].error.psnr_db);
+      });
   const auto& summary = summaries.front();
-  return {summary.mean, summary.views.size(), renderer.cpu_ms().median};
+  drawn.error = summary.mean;
+  drawn.count = summary.views.size();
+  for (double* const sum :
+       {&drawn.outline.box_psnr_db, &drawn.outline.edge_difference, &drawn.outline.hole_fraction}) {
+    *sum /= static_cast<double>(std::max<std::size_t>(drawn.count, 1));
+  }
+  drawn.render_ms = renderer.cpu_ms().median;
+  return drawn;
+}
+
+/// A camera's way past the object, round what is its vertical on the board.
+SmoothPath path_through(const Observations& observations) {
+  const pipeline::IntegratedView& middle = observations.views[observations.views.size() / 2];
+  return smooth_path(
+      observations.session.camera_of(middle.frame_index), middle.camera_from_object,
+      core::bounds_of(observations.mesh).center().cast<double>(),
+      observations.session.board_from_object.linear().transpose() * Eigen::Vector3d::UnitZ());
+}
+
+/// Saves, reads back and draws as another program would: size of the file, memory, jumps.
+void measure_saved(const fitting::LightField& light_field, const Observations& observations,
+                   render::Context& gl, const std::filesystem::path& scratch, int threads,
+                   Measurement& measurement) {
+  fitting::write_model(scratch, observations.mesh, light_field);
+  measurement.model_bytes = std::filesystem::file_size(scratch);
+  std::size_t with_model = 0;
+  {
+    const fitting::Model model = fitting::read_model(scratch);
+    std::filesystem::remove(scratch);
+    const auto renderer = render::make_renderer(gl, model.mesh, *model.light_field, threads);
+    measurement.pop_ratio = pop_ratio(*renderer, path_through(observations));
+    with_model = allocated_bytes();
+  }
+  // What is given back is what was needed.
+  const std::size_t without = allocated_bytes();
+  measurement.drawing_bytes = with_model > without ? with_model - without : 0;
 }
 
 /// What a pixel covers on the object.
@@ -104,12 +164,14 @@ Measurement measure_candidate(const Candidate& candidate, const Observations& ob
   measurement.samples = fitter->statistics().samples;
   measurement.patches = patches != nullptr ? patches->patch_count() : 0;
   measurement.coefficients = light_field.coefficient_count();
-  measurement.model_bytes = bytes_of(observations.mesh, light_field, scratch);
+  measure_saved(light_field, observations, gl, scratch, threads, measurement);
   measurement.light_field_bytes = fitting::byte_size(light_field);
 
   // Draw and compare.
   const DrawnViews drawn = draw_views(light_field, observations, gl, threads);
   measurement.error = drawn.error;
+  measurement.worst_psnr_db = drawn.worst_psnr_db;
+  measurement.outline = drawn.outline;
   measurement.views = drawn.count;
   measurement.render_view_ms = drawn.render_ms;
   return measurement;

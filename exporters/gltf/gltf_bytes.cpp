@@ -41,6 +41,20 @@ std::size_t add_positions(DocumentBuilder& builder, const std::vector<Eigen::Vec
   return accessor;
 }
 
+/// `vertex`: of the mesh, that each point stands for.
+void add_confidence(DocumentBuilder& builder, const std::vector<core::VertexConfidence>& confidence,
+                    const std::vector<std::uint32_t>& vertex, json& attributes) {
+  if (confidence.empty()) return;
+  std::vector<float> means;
+  std::vector<std::uint64_t> seen;  // four numbers of 16 bits, little-endian as the file
+  for (const std::uint32_t index : vertex) {
+    means.push_back(confidence[index].mean);
+    seen.push_back(confidence[index].seen);
+  }
+  attributes["_CONFIDENCE"] = add_numbers(builder, means, fitting::kFloat, "SCALAR");
+  attributes["_SEEN"] = add_numbers(builder, seen, fitting::kUnsignedShort, "VEC4");
+}
+
 void begin_scene(DocumentBuilder& builder, const Eigen::Vector3d& offset) {
   builder.document = {{"asset", {{"version", "2.0"}, {"generator", "sheen"}}},
                       {"scene", 0},
@@ -61,7 +75,8 @@ std::string finished(const std::filesystem::path& path, DocumentBuilder& builder
 }  // namespace
 
 std::string textured_bytes(const std::filesystem::path& path, const core::Mesh& mesh,
-                           const fitting::SurfaceTexture& texture) {
+                           const fitting::SurfaceTexture& texture,
+                           const std::vector<core::VertexConfidence>& confidence) {
   const core::AtlasVertices split = core::split_at_seams(mesh, texture.atlas());
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;
@@ -77,6 +92,7 @@ std::string textured_bytes(const std::filesystem::path& path, const core::Mesh& 
   const std::size_t places = add_numbers(builder, split.place, fitting::kUnsignedShort, "VEC2");
   document["accessors"][places]["normalized"] = true;
   attributes["TEXCOORD_0"] = places;
+  add_confidence(builder, confidence, split.vertex, attributes);
   const std::size_t indices =
       builder.add_accessor(std::as_bytes(std::span(split.triangles)), fitting::kElementArrayBuffer,
                            fitting::kUnsignedInt, "SCALAR", 3 * split.triangles.size());
@@ -99,7 +115,8 @@ std::string textured_bytes(const std::filesystem::path& path, const core::Mesh& 
   return finished(path, builder);
 }
 
-std::string splat_bytes(const std::filesystem::path& path, const Splats& splats) {
+std::string splat_bytes(const std::filesystem::path& path, const Splats& splats,
+                        const std::vector<core::VertexConfidence>& confidence) {
   DocumentBuilder builder;
   begin_scene(builder, splats.offset);
   const std::size_t count = splats.splats.size();
@@ -135,6 +152,7 @@ std::string splat_bytes(const std::filesystem::path& path, const Splats& splats)
                  std::to_string(order)] = add(harmonics, "VEC3");
     }
   }
+  add_confidence(builder, confidence, splats.vertex, attributes);
   const json extension{{"kernel", "ellipse"},
                        {"colorSpace", "srgb_rec709_display"},
                        {"projection", "perspective"},

@@ -5,6 +5,7 @@
 #include "exporters/gltf/gltf_bytes.h"
 #include "exporters/splats/splats.h"
 #include "exporters/surface/mean_texture.h"
+#include "exporters/surface/vertex_confidence.h"
 #include "exporters/upright.h"
 
 namespace sheen::exporters::gltf {
@@ -28,15 +29,16 @@ Written write(const fitting::Model& model, const std::filesystem::path& path,
               const fitting::FitOptions& given) {
   const auto& options = fitting::options_as<Options>(given);
   const Eigen::Matrix3f y_up = y_up_from_object(options.up);
+  const auto confidence = vertex_confidence(model);
   if (options.splats) {
     const Splats splats = make_splats(model, y_up);
-    core::write_file(path, splat_bytes(path, splats));
+    core::write_file(path, splat_bytes(path, splats, confidence));
     return {.files = {path},
             .as_read = splat_model(model, splats, y_up),
             .remarks = splat_remarks(model)};
   }
   const fitting::SurfaceTexture texture = mean_texture(model);
-  core::write_file(path, textured_bytes(path, turned(model.mesh, y_up), texture));
+  core::write_file(path, textured_bytes(path, turned(model.mesh, y_up), texture, confidence));
   return {.files = {path}, .as_read = textured_model(model, texture), .remarks = {}};
 }
 

@@ -4,6 +4,7 @@
 #include "core/files/write_file.h"
 #include "exporters/linear_colour.h"
 #include "exporters/surface/mean_texture.h"
+#include "exporters/surface/vertex_confidence.h"
 #include "exporters/upright.h"
 
 #include <fmt/format.h>
@@ -30,7 +31,17 @@ std::vector<Eigen::Vector3f> linear(std::vector<Eigen::Vector3f> colours) {
   return colours;
 }
 
-std::string usd_text(const core::Mesh& mesh, const std::vector<Eigen::Vector3f>& colours) {
+void add_confidence(std::string& text, const std::vector<core::VertexConfidence>& confidence) {
+  if (confidence.empty()) return;
+  text += "        float[] primvars:confidence = [";
+  for (std::size_t i = 0; i < confidence.size(); ++i) {
+    fmt::format_to(std::back_inserter(text), "{}{:.3f}", i == 0 ? "" : ", ", confidence[i].mean);
+  }
+  text += "] (\n            interpolation = \"vertex\"\n        )\n";
+}
+
+std::string usd_text(const core::Mesh& mesh, const std::vector<Eigen::Vector3f>& colours,
+                     const std::vector<core::VertexConfidence>& confidence) {
   std::string text = R"(#usda 1.0
 (
     defaultPrim = "Object"
@@ -63,9 +74,9 @@ def Xform "Object" (
   add_vectors(text, mesh.positions);
   text += "\n        color3f[] primvars:displayColor = ";
   add_vectors(text, linear(colours));
-  text +=
-      " (\n            interpolation = \"vertex\"\n        )\n"
-      "        uniform token subdivisionScheme = \"none\"\n    }\n}\n";
+  text += " (\n            interpolation = \"vertex\"\n        )\n";
+  add_confidence(text, confidence);
+  text += "        uniform token subdivisionScheme = \"none\"\n    }\n}\n";
   return text;
 }
 
@@ -73,7 +84,8 @@ Written write(const fitting::Model& model, const std::filesystem::path& path,
               const fitting::FitOptions& options) {
   const auto& up = fitting::options_as<UprightOptions>(options).up;
   const auto colours = model.light_field->vertex_colours(model.mesh);
-  core::write_file(path, usd_text(turned(model.mesh, y_up_from_object(up)), colours));
+  core::write_file(
+      path, usd_text(turned(model.mesh, y_up_from_object(up)), colours, vertex_confidence(model)));
   return {.files = {path}, .as_read = coloured_model(model, colours), .remarks = {}};
 }
 

@@ -28,13 +28,15 @@ fitting::OptionTable option_table(Options& options) {
                               [&value](const std::string& given) { value = given; },
                               [&value] { return std::string(value); }};
   };
-  return {text("title", "TEXT", "Title of the page (default: the file's name)", options.title),
-          text("background", "dark|light|#rrggbb", "Background that the page opens with",
-               options.background),
-          up_option(options.up),
-          text("poster", "FILE.png",
-               "Picture that is shown until the model is there, and where it cannot be drawn",
-               options.poster)};
+  return {
+      text("title", "TEXT", "Title of the page (default: the file's name)", options.title),
+      text("background", "dark|light|#rrggbb", "Background that the page opens with",
+           options.background),
+      up_option(options.up),
+      text("poster", "FILE.png",
+           "Picture that is shown until the model is there, and where it cannot be drawn; drawn "
+           "where there is no such file",
+           options.poster)};
 }
 
 }  // namespace sheen::exporters::viewer

@@ -5,6 +5,7 @@
 #include "core/files/read_file.h"
 #include "core/mesh/bounds.h"
 #include "core/text/script_text.h"
+#include "exporters/viewer/first_view.h"
 #include "exporters/viewer/packed_arrays.h"
 #include "exporters/viewer/patch_texels.h"
 #include "exporters/viewer/surface_tables.h"
@@ -152,6 +153,8 @@ Page make_page(const fitting::Model& model, const Options& options) {
   document["patch"].update(texels.shader);
   document["background"] = options.background;
   document["up"] = options.up;
+  const FirstView first = first_view(model.mesh, model.seen, options.up);
+  document["home"] = {{"azimuth", first.azimuth_rad}, {"elevation", first.elevation_rad}};
   document["facts"] = {{"representation", model.light_field->representation()},
                        {"patches", patches.patch_count()},
                        {"observed", std::count(observed.begin(), observed.end(), std::uint8_t{1})},

@@ -146,8 +146,9 @@ Planes DetailFitter::starting_texture() const {
   }
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
     const auto& triangle = mesh_.triangles[t];
+    const WeightedMean* next = texel_means_.of(t).data();
     for (const SurfaceTexel& texel : texel_means_.surface().of(t)) {
-      const WeightedMean& mean = texel_means_.texels()[texel.texel_idx];
+      const WeightedMean& mean = *next++;
       const bool seen_around = texture_sums_.texels()[texel.texel_idx].weight > 0;
       if (mean.weight == 0 && seen_around) continue;
       const Eigen::Vector3f around =
@@ -164,10 +165,11 @@ Planes DetailFitter::starting_texture() const {
 
 /// As simplify_texture wants them.
 std::vector<float> DetailFitter::texel_weights() const {
-  std::vector<float> weights(texel_means_.texels().size(), -1.0f);
+  std::vector<float> weights(model_.texture().texels().size(), -1.0f);
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    const WeightedMean* mean = texel_means_.of(t).data();
     for (const SurfaceTexel& texel : texel_means_.surface().of(t)) {
-      weights[texel.texel_idx] = texel_means_.texels()[texel.texel_idx].observations();
+      weights[texel.texel_idx] = mean++->observations();
     }
   }
   return weights;

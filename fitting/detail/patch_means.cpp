@@ -11,11 +11,11 @@ namespace {
 
 constexpr float kVisible = 2.0f / 255.0f;
 
-std::array<float, 3> as_bytes(const Rgb& rgb) {
+Four as_bytes(const Rgb& rgb) {
   const auto byte = [](double value) {
     return static_cast<float>(std::clamp(255.0 * value, 0.0, 255.0));
   };
-  return {byte(rgb[0]), byte(rgb[1]), byte(rgb[2])};
+  return Four{1, byte(rgb[0]), byte(rgb[1]), byte(rgb[2])};
 }
 
 }  // namespace

@@ -23,6 +23,10 @@ class SurfaceTexels {
   explicit SurfaceTexels(const core::Atlas& atlas);
 
   [[nodiscard]] std::size_t size() const { return texels_.size(); }
+  /// Texels of all triangles before this one.
+  [[nodiscard]] std::size_t before(std::size_t triangle_idx) const {
+    return offsets_[triangle_idx];
+  }
   /// Those of a triangle.
   [[nodiscard]] std::span<const SurfaceTexel> of(std::size_t triangle_idx) const {
     return {texels_.data() + offsets_[triangle_idx],

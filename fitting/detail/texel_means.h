@@ -11,6 +11,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace sheen::fitting::detail {
@@ -38,8 +39,11 @@ class TexelMeans {
   /// Pages of the texture that the last view changed, ascending.
   [[nodiscard]] std::vector<std::uint32_t> touched_pages() const;
 
-  [[nodiscard]] const std::vector<WeightedMean>& texels() const { return means_; }
   [[nodiscard]] const SurfaceTexels& surface() const { return surface_; }
+  /// Those of a triangle's texels, in the order of surface().of(triangle_idx).
+  [[nodiscard]] std::span<const WeightedMean> of(std::size_t triangle_idx) const {
+    return {means_.data() + surface_.before(triangle_idx), surface_.of(triangle_idx).size()};
+  }
   /// Of the last view, one for each triangle.
   [[nodiscard]] const std::vector<CornerColours>& corners() const { return corners_; }
 
@@ -52,7 +56,7 @@ class TexelMeans {
   const core::Mesh& mesh_;
   int threads_;
   SurfaceTexels surface_;
-  std::vector<WeightedMean> means_;
+  std::vector<WeightedMean> means_;  ///< triangle by triangle: memory is walked in its order
   std::vector<CornerColours> corners_;
   std::vector<std::uint8_t> page_is_touched_;
 };

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "fitting/detail/four.h"
+
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 namespace sheen::fitting::detail {
 
@@ -44,6 +48,17 @@ struct TexelGrid {
   std::size_t width;
 };
 
+/// Adds qb times `first` to the first four sums, times `last` to the others. Products are below
+/// 2^24 and so exact in floats.
+inline void add_products(float qb, const Four& first, const Four& last, TexelSums& texel) {
+  static_assert(offsetof(TexelSums, below_left) == sizeof(FourCounts));
+  std::array<FourCounts, 2> sums;
+  std::memcpy(&sums, &texel, sizeof(sums));
+  sums[0] += as_counts(qb * first);
+  sums[1] += as_counts(qb * last);
+  std::memcpy(static_cast<void*>(&texel), &sums, sizeof(sums));
+}
+
 /// Adds a pixel of colour `rgb` (0 to 255 each) that sees the texture at `place` (texels, at least
 /// one away from the border) under this cosine. Does nothing where a texel around is full.
 inline void add_pixel(const TexelGrid& grid, const Eigen::Vector2f& place, float cosine,
@@ -66,22 +81,15 @@ inline void add_pixel(const TexelGrid& grid, const Eigen::Vector2f& place, float
   const std::uint32_t b3 = right * below;
   const auto q = static_cast<std::uint32_t>(
       std::max(1.0f, cosine * cosine * static_cast<float>(kCosineUnits) + 0.5f));
-  const auto add = [&](TexelSums& texel, std::uint32_t qb, std::uint32_t to_right,
-                       std::uint32_t to_below, std::uint32_t to_below_right,
-                       std::uint32_t to_below_left) {
-    texel.weight += qb;
-    texel.right += qb * to_right;
-    texel.below += qb * to_below;
-    texel.below_right += qb * to_below_right;
-    texel.below_left += qb * to_below_left;
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      texel.colour[channel] += qb * rgb[channel];
-    }
-  };
-  add(upper[0], q * b0, b1, b2, b3, 0);
-  add(upper[1], q * b1, 0, b3, 0, b2);
-  add(lower[0], q * b2, b3, 0, 0, 0);
-  add(lower[1], q * b3, 0, 0, 0, 0);
+  const auto f = [](std::uint32_t v) { return static_cast<float>(v); };
+  const float r = f(rgb[0]);
+  const float g = f(rgb[1]);
+  const float b = f(rgb[2]);
+  const Four light{0, r, g, b};
+  add_products(f(q * b0), Four{1, f(b1), f(b2), f(b3)}, light, upper[0]);
+  add_products(f(q * b1), Four{1, 0, f(b3), 0}, Four{f(b2), r, g, b}, upper[1]);
+  add_products(f(q * b2), Four{1, f(b3), 0, 0}, light, lower[0]);
+  add_products(f(q * b3), Four{1, 0, 0, 0}, light, lower[1]);
 }
 
 }  // namespace sheen::fitting::detail

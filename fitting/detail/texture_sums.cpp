@@ -46,6 +46,13 @@ void TextureSums::sort_into_bands() {
     const bool fits = rows.last < (band + 2) * kBandRows;
     (fits ? bands_[static_cast<std::size_t>(band)] : high_).push_back(t);
   }
+  // Neighbours on the atlas one after the other find their texels in the cache.
+  const auto block = [&](std::uint32_t t) {
+    return static_cast<int>(atlas_.place(t, 0).x()) / kBandRows;
+  };
+  for (Triangles& band : bands_) {
+    std::ranges::stable_sort(band, {}, block);
+  }
 }
 
 // Bands of equal parity share no row, so each may be worked on by another thread.
@@ -66,11 +73,35 @@ void TextureSums::integrate(const core::Observation& observation, const ViewRast
   integrate_triangles(high_, observation, raster);
 }
 
+// Without this a third of the time is spent waiting for the memory.
+void TextureSums::prefetch(std::uint32_t triangle_idx) const {
+  const Eigen::Vector2f a = atlas_.place(triangle_idx, 0);
+  const Eigen::Vector2f b = atlas_.place(triangle_idx, 1);
+  const Eigen::Vector2f c = atlas_.place(triangle_idx, 2);
+  constexpr std::size_t most_rows = 8;
+  const auto first =
+      static_cast<std::size_t>(std::max(0.0f, std::min({a.y(), b.y(), c.y()}) - 0.5f));
+  const auto last = static_cast<std::size_t>(std::max({a.y(), b.y(), c.y()}) + 0.5f);
+  const auto left =
+      static_cast<std::size_t>(std::max(0.0f, std::min({a.x(), b.x(), c.x()}) - 0.5f));
+  const auto right = static_cast<std::size_t>(std::max({a.x(), b.x(), c.x()}) + 0.5f);
+  for (std::size_t y = first; y <= std::min(last, first + most_rows); ++y) {
+    const TexelSums* const row = texels_.data() + y * static_cast<std::size_t>(atlas_.width);
+    for (std::size_t x = left; x <= right; x += 2) __builtin_prefetch(row + x, 1);
+  }
+}
+
 void TextureSums::integrate_triangles(const Triangles& triangles,
                                       const core::Observation& observation,
                                       const ViewRaster& raster) {
+  constexpr std::size_t ahead = 6;  // triangles
   const TexelGrid grid{texels_.data(), static_cast<std::size_t>(atlas_.width)};
-  for (const std::uint32_t t : triangles) {
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (i + ahead < triangles.size() && raster.is_front(triangles[i + ahead])) {
+      raster.prefetch(triangles[i + ahead]);
+      prefetch(triangles[i + ahead]);
+    }
+    const std::uint32_t t = triangles[i];
     const std::optional<SeenTriangle> triangle = raster.triangle(t);
     if (!triangle) continue;
     const Eigen::Vector2f a = atlas_.place(t, 0);

@@ -6,9 +6,11 @@
 #include "core/samples/observation.h"
 #include "fitting/detail/texel_sums.h"
 #include "fitting/detail/view_raster.h"
+#include "fitting/huge_pages.h"
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace sheen::fitting::detail {
@@ -22,20 +24,21 @@ class TextureSums {
   /// Adds the pixels of a view. The same on any number of threads.
   void integrate(const core::Observation& observation, const ViewRaster& raster);
 
-  [[nodiscard]] const std::vector<TexelSums>& texels() const { return texels_; }
+  [[nodiscard]] std::span<const TexelSums> texels() const { return texels_; }
 
  private:
   using Triangles = std::vector<std::uint32_t>;
 
   void sort_into_bands();
+  void prefetch(std::uint32_t triangle_idx) const;
   void integrate_triangles(const Triangles& triangles, const core::Observation& observation,
                            const ViewRaster& raster);
 
   const core::Mesh& mesh_;
   const core::Atlas& atlas_;
   int threads_;
-  std::vector<TexelSums> texels_;
-  std::vector<Triangles> bands_;               ///< by first row
+  std::vector<TexelSums, HugePageAllocator<TexelSums>> texels_;
+  std::vector<Triangles> bands_;               ///< by first row; from left to right
   Triangles high_;                             ///< triangles that reach over more rows
   std::array<std::uint8_t, 256> corrected_{};  ///< a channel's value without the view's gain
 };

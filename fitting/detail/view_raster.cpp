@@ -16,10 +16,12 @@ ViewRaster::ViewRaster(const core::Mesh& mesh, int threads)
     : mesh_(mesh),
       threads_(threads),
       depth_(mesh, threads, core::raster_kernel_sets().front()),
-      vertices_(mesh.positions.size()) {}
+      vertices_(mesh.positions.size()),
+      is_front_(mesh.triangles.size()) {}
 
 void ViewRaster::set_view(const core::Observation& observation) {
   project(observation);
+  find_fronts();
   box_ = box_of(observation);
   step_ = 1.0f / static_cast<float>(observation.camera.intrinsics().focal_px.minCoeff());
   if (box_.right < box_.left || box_.bottom < box_.top) return;
@@ -93,45 +95,30 @@ core::PixelBox ViewRaster::box_of(const core::Observation& observation) const {
           std::min(within(bottom + 1.0f, last_y), last_y)};
 }
 
-std::optional<SeenTriangle> ViewRaster::triangle(std::size_t triangle_idx) const {
-  const auto& vertex = mesh_.triangles[triangle_idx];
-  const SeenTriangle triangle{{vertices_[vertex[0]], vertices_[vertex[1]], vertices_[vertex[2]]}};
-  const auto& [a, b, c] = triangle.corner;
-  const float area = (c.x_px - a.x_px) * (b.y_px - a.y_px) - (b.x_px - a.x_px) * (c.y_px - a.y_px);
-  // Comparisons are written so that a number that is not one fails.
-  const bool projected = std::min({a.inverse_depth, b.inverse_depth, c.inverse_depth}) > 0.0f;
-  const bool frontal = std::max({a.cosine, b.cosine, c.cosine}) >= kLeastCosine;
-  if (!projected || !frontal || !(area > 0.0f)) return std::nullopt;
-  return triangle;
+void ViewRaster::find_fronts() {
+  core::parallel_for(is_front_.size(), threads_, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto& vertex = mesh_.triangles[t];
+      const SeenVertex& a = vertices_[vertex[0]];
+      const SeenVertex& b = vertices_[vertex[1]];
+      const SeenVertex& c = vertices_[vertex[2]];
+      const float area =
+          (c.x_px - a.x_px) * (b.y_px - a.y_px) - (b.x_px - a.x_px) * (c.y_px - a.y_px);
+      // Comparisons are written so that a number that is not one fails. No branch: which triangles
+      // are fronts is hard to foresee.
+      const bool projected = std::min({a.inverse_depth, b.inverse_depth, c.inverse_depth}) > 0.0f;
+      const bool frontal = std::max({a.cosine, b.cosine, c.cosine}) >= kLeastCosine;
+      is_front_[t] = static_cast<std::uint8_t>(projected & frontal & (area > 0.0f));
+    }
+  });
 }
 
-std::optional<Eigen::Vector2f> ViewRaster::place(const SeenTriangle& triangle,
-                                                 const std::array<float, 3>& weight) const {
-  const float cosine = triangle.cosine(weight);
-  if (!(cosine >= kLeastCosine)) return std::nullopt;
-  // Weights on the surface, then on the image.
-  float depth_m = 0;
-  Eigen::Vector2f sum = Eigen::Vector2f::Zero();
-  for (std::size_t i = 0; i < 3; ++i) {
-    const SeenVertex& corner = triangle.corner[i];
-    const float part_m = weight[i] / corner.inverse_depth;
-    depth_m += part_m;
-    sum += part_m * Eigen::Vector2f(corner.x_px, corner.y_px);
-  }
-  const Eigen::Vector2f at_px = sum / depth_m;
-  if (!(at_px.x() >= static_cast<float>(box_.left) && at_px.x() < static_cast<float>(box_.right) &&
-        at_px.y() >= static_cast<float>(box_.top) && at_px.y() < static_cast<float>(box_.bottom))) {
-    return std::nullopt;
-  }
-  // The four pixels around must show one surface, and nothing nearer than the point: within a pixel
-  // the surface rises by tan = sqrt(1 - c^2) / c steps.
-  const auto x = static_cast<int>(at_px.x());
-  const auto y = static_cast<int>(at_px.y());
-  const float rise = 1.0f + 2.0f * std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
-  const bool whole =
-      is_whole(x, y) && is_whole(x + 1, y) && is_whole(x, y + 1) && is_whole(x + 1, y + 1);
-  if (!whole || depth_.at(x, y) > (1.0f + rise * step_) / depth_m) return std::nullopt;
-  return at_px;
+std::optional<SeenTriangle> ViewRaster::triangle(std::size_t triangle_idx) const {
+  if (is_front_[triangle_idx] == 0) return std::nullopt;
+  const auto& vertex = mesh_.triangles[triangle_idx];
+  SeenTriangle triangle{{vertices_[vertex[0]], vertices_[vertex[1]], vertices_[vertex[2]]}};
+  for (std::size_t i = 0; i < 3; ++i) triangle.depth_m[i] = 1.0f / triangle.corner[i].inverse_depth;
+  return triangle;
 }
 
 bool ViewRaster::is_at_outline(float x_px, float y_px) const {

@@ -27,6 +27,7 @@ struct alignas(16) SeenVertex {
 /// A triangle in a view, its front on the image.
 struct SeenTriangle {
   std::array<SeenVertex, 3> corner;
+  std::array<float, 3> depth_m{};  ///< of the corners
 
   /// Interpolated on the surface; the weights of the corners add up to 1.
   [[nodiscard]] float cosine(const std::array<float, 3>& weight) const {
@@ -57,6 +58,19 @@ class ViewRaster {
   /// grazing angle or has a corner without a pixel.
   [[nodiscard]] std::optional<SeenTriangle> triangle(std::size_t triangle_idx) const;
 
+  /// Whether `triangle` has something.
+  [[nodiscard]] bool is_front(std::size_t triangle_idx) const {
+    return is_front_[triangle_idx] != 0;
+  }
+
+  /// Memory answers late: asks it for what `triangle` will need.
+  void prefetch(std::size_t triangle_idx) const {
+    if (is_front_[triangle_idx] == 0) return;
+    for (const std::uint32_t vertex : mesh_.triangles[triangle_idx]) {
+      __builtin_prefetch(&vertices_[vertex]);
+    }
+  }
+
   /// Where a point of a triangle is seen, pixels; nothing where it is not. The weights of the
   /// corners add up to 1.
   [[nodiscard]] std::optional<Eigen::Vector2f> place(const SeenTriangle& triangle,
@@ -74,6 +88,7 @@ class ViewRaster {
   static constexpr float kLeastCosine = 0.2f;  ///< as SamplingLimits
 
   void project(const core::Observation& observation);
+  void find_fronts();
   [[nodiscard]] core::PixelBox box_of(const core::Observation& observation) const;
   void find_whole_pixels();
   /// Whether the pixel shows one surface; it lies in the box.
@@ -86,11 +101,43 @@ class ViewRaster {
   int threads_;
   core::ZBuffer depth_;
   std::vector<SeenVertex> vertices_;
-  core::PixelBox box_;               ///< pixels that may be visited
+  std::vector<std::uint8_t> is_front_;  ///< of the triangles, 1 or 0
+  core::PixelBox box_;                  ///< pixels that may be visited
   float step_ = 0;                   ///< angle of a pixel: change of depth per pixel at 45 degrees
   std::size_t row_ = 0;              ///< pixels in a row of the box
   std::vector<std::uint8_t> whole_;  ///< 1 where the four pixels around show the same surface
 };
+
+inline std::optional<Eigen::Vector2f> ViewRaster::place(const SeenTriangle& triangle,
+                                                        const std::array<float, 3>& weight) const {
+  const float cosine = triangle.cosine(weight);
+  if (!(cosine >= kLeastCosine)) return std::nullopt;
+  // Weights on the surface, then on the image.
+  float depth_m = 0;
+  Eigen::Vector2f sum = Eigen::Vector2f::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const SeenVertex& corner = triangle.corner[i];
+    const float part_m = weight[i] * triangle.depth_m[i];
+    depth_m += part_m;
+    sum += part_m * Eigen::Vector2f(corner.x_px, corner.y_px);
+  }
+  const float inverse_depth = 1.0f / depth_m;
+  const Eigen::Vector2f at_px = sum * inverse_depth;
+  if (!(at_px.x() >= static_cast<float>(box_.left) && at_px.x() < static_cast<float>(box_.right) &&
+        at_px.y() >= static_cast<float>(box_.top) && at_px.y() < static_cast<float>(box_.bottom))) {
+    return std::nullopt;
+  }
+  // The four pixels around must show one surface, and nothing nearer than the point: within a pixel
+  // the surface rises by tan = sqrt(1 - c^2) / c steps.
+  const auto x = static_cast<int>(at_px.x());
+  const auto y = static_cast<int>(at_px.y());
+  const bool whole =
+      is_whole(x, y) && is_whole(x + 1, y) && is_whole(x, y + 1) && is_whole(x + 1, y + 1);
+  if (!whole) return std::nullopt;
+  const float rise = 1.0f + 2.0f * std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
+  if (depth_.at(x, y) > (1.0f + rise * step_) * inverse_depth) return std::nullopt;
+  return at_px;
+}
 
 template <typename Visit>
 void ViewRaster::for_each_pixel(const SeenTriangle& triangle, const Visit& visit) const {

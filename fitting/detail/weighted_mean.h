@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "fitting/detail/four.h"
+
 #include <Eigen/Core>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 namespace sheen::fitting::detail {
 
@@ -16,15 +19,17 @@ struct alignas(16) WeightedMean {
   std::uint32_t weight = 0;               ///< sum of q, in 64ths
   std::array<std::uint32_t, 3> colour{};  ///< sum of q times the colour, RGB, in 1020ths
 
-  /// Adds a colour (0 to 255 each). Takes no more when its sums could overflow: after 65,000 views
-  /// that see the place frontally.
-  void add(const std::array<float, 3>& rgb, float squared_cosine) {
+  /// Adds a colour: 1, R, G, B, 0 to 255 each. Takes no more when its sums could overflow: after
+  /// 65,000 views that see the place frontally.
+  void add(const Four& one_rgb, float squared_cosine) {
     if (weight > kFull) return;
+    const FourCounts units =
+        as_counts(one_rgb * Four{1, kColourUnits, kColourUnits, kColourUnits} + 0.5f);
     const auto q = static_cast<std::uint32_t>(squared_cosine * kWeightUnits + 0.5f);
-    weight += q;
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      colour[channel] += q * static_cast<std::uint32_t>(rgb[channel] * kColourUnits + 0.5f);
-    }
+    FourCounts sums;
+    std::memcpy(&sums, this, sizeof(sums));
+    sums += q * units;
+    std::memcpy(static_cast<void*>(this), &sums, sizeof(sums));
   }
 
   /// Sum of q.

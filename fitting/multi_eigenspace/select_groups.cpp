@@ -10,6 +10,9 @@ namespace {
 /// Least gain that counts: below it is rounding.
 constexpr double kLeastGain = 1e-9;
 
+/// What an eigenimage or a mean costs beside a picture; it is smoother.
+constexpr double kImageCost = 0.5;
+
 /// What a residual costs beside a picture of 8 bits a value: 1/2 log2(1 + MSE) bits.
 double residual_cost(double mean_square) {
   constexpr double bits = 8;
@@ -99,7 +102,8 @@ Eigen::MatrixXd description_gains(const std::vector<ViewGroup>& groups) {
     const ViewGroup& group = groups[static_cast<std::size_t>(i)];
     double cost = 0;
     for (const double residual : group.residuals) cost += residual_cost(residual);
-    gains(i, i) = static_cast<double>(group.members.size()) - cost - (group.dimensions() + 1);
+    gains(i, i) =
+        static_cast<double>(group.members.size()) - cost - kImageCost * (group.dimensions() + 1);
     for (Eigen::Index j = 0; j < i; ++j) {
       gains(i, j) = gains(j, i) = overlap_gain(group, groups[static_cast<std::size_t>(j)]);
     }

@@ -46,7 +46,8 @@ std::vector<Atom> make_atoms() {
 // colour shows.
 std::vector<float> make_means() {
   constexpr int steps = 256;
-  std::vector<double> sums(atoms().size(), 0.0);
+  const std::span<const Atom> all = atoms();
+  std::vector<double> sums(all.size(), 0.0);
   double points = 0;
   for (int y = 0; y < steps; ++y) {
     for (int x = 0; x < steps; ++x) {
@@ -55,7 +56,7 @@ std::vector<float> make_means() {
       if (uv.squaredNorm() > 1.0f) continue;
       points += 1;
       for (std::size_t i = 0; i < sums.size(); ++i) {
-        const Atom& atom = atoms()[i];
+        const Atom& atom = all[i];
         sums[i] += static_cast<double>(iwls::wendland((uv - atom.center).norm() / atom.support));
       }
     }

@@ -72,6 +72,19 @@ void wendland(const Column& u, const Column& v, const Column& weight, std::size_
 }
 
 SHEEN_FOR_EVERY_PROCESSOR
+float wendland_sum(const Column& u, const Column& v, const Column& weight, std::size_t rows,
+                   float center_u, float center_v, float support) {
+  Column theta;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
+  relative_distances(u, v, rows, center_u, center_v, support, theta);
+  wendland_of_squared(rows, theta);
+  Group sums{};
+  for (std::size_t row = 0; row < rows; row += kRowGroup) {
+    sums += group(weight, row) * group(theta, row);
+  }
+  return total(sums);
+}
+
+SHEEN_FOR_EVERY_PROCESSOR
 void kernel_density(const Column& u, const Column& v, std::size_t rows, float reach, Column& out) {
   Column near;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
   const auto all = static_cast<float>(rows);

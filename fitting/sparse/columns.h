@@ -29,6 +29,10 @@ namespace columns {
 void wendland(const Column& u, const Column& v, const Column& weight, std::size_t rows,
               float center_u, float center_v, float support, Column& out);
 
+/// Sum over the rows of weight * theta(|(u, v) - (center_u, center_v)| / support).
+float wendland_sum(const Column& u, const Column& v, const Column& weight, std::size_t rows,
+                   float center_u, float center_v, float support);
+
 /// out[i] = sum_j theta(|x_i - x_j| / reach). Rows behind the last sample must lie further than
 /// `reach` from all samples.
 void kernel_density(const Column& u, const Column& v, std::size_t rows, float reach, Column& out);

@@ -41,12 +41,13 @@ Eigen::Vector3f LightFieldModel::colour(std::size_t patch_idx, const Eigen::Vect
   const std::size_t further = base_terms(slot) + rbf_count(slot) - 1;
   if (further == 0) return sum;
   const Eigen::Vector3f direction = core::hemisphere_from_disc(uv);
+  const std::span<const Atom> dictionary = atoms();
   std::size_t term = 0;
   for (; term + 1 < base_terms(slot); ++term) {
     sum += direction[static_cast<Eigen::Index>(term)] * as_floats(slot.further[term].colour);
   }
   for (; term < further; ++term) {
-    const Atom& atom = atoms()[slot.further[term].atom];
+    const Atom& atom = dictionary[slot.further[term].atom];
     const float squared = (direction.head<2>() - atom.center).squaredNorm();
     if (squared >= atom.support * atom.support) continue;
     sum += iwls::wendland(std::sqrt(squared) / atom.support) * as_floats(slot.further[term].colour);

@@ -14,8 +14,9 @@ Eigen::Vector3f evaluate(const PatchModel& model, const Eigen::Vector2f& uv) {
       colour += direction[static_cast<Eigen::Index>(axis)] * model.coefficient[1 + axis];
     }
   }
+  const std::span<const Atom> dictionary = atoms();
   for (std::size_t rbf = 0; rbf < model.rbf_count; ++rbf) {
-    const Atom& atom = atoms()[model.atom[rbf]];
+    const Atom& atom = dictionary[model.atom[rbf]];
     const float distance = (direction.head<2>() - atom.center).norm() / atom.support;
     colour += iwls::wendland(distance) * model.coefficient[model.base_terms + rbf];
   }

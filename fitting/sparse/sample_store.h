@@ -49,6 +49,7 @@ class SampleStore {
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] DirectedColour at(std::size_t idx, const SamplePool& pool) const;
+  [[nodiscard]] Eigen::Vector2f direction(std::size_t idx, const SamplePool& pool) const;
   /// Samples that were averaged into this one, 1 to 255.
   [[nodiscard]] float count(std::size_t idx, const SamplePool& pool) const;
   /// Reads all of them; `samples` has room for kMaxStoredSamples.

@@ -275,11 +275,10 @@ std::optional<TermList> Selection::with_best_rbf(const TermList& terms,
     if (terms.holds(idx)) continue;
     design_.evaluate(idx);
     const Column& column = design_.column(idx);
-    float squared = 0;
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      const float product = columns::dot(column, fit_.residuals(channel), rows);
-      squared += product * product;
-    }
+    std::array<float, 3> product;
+    columns::dots(&fit_.residuals(0), 3, column, rows, product.data());
+    const float squared =
+        product[0] * product[0] + product[1] * product[1] + product[2] * product[2];
     const float gain = squared / (columns::dot(column, column, rows) + design_.ridge(idx));
     if (gain > largest) {
       largest = gain;

@@ -5,6 +5,7 @@
 #include "fitting/samples/change_list.h"
 #include "fitting/samples/sample.h"
 #include "fitting/sparse/light_field_model.h"
+#include "fitting/sparse/mean_over_views.h"
 #include "fitting/sparse/noise_estimate.h"
 #include "fitting/sparse/predicted_error.h"
 #include "fitting/sparse/sample_store.h"
@@ -293,16 +294,7 @@ std::optional<float> SparsePatches::predicted_error(std::size_t patch_idx,
 }
 
 Eigen::Vector3f SparsePatches::mean_over_views(std::size_t patch_idx) const {
-  const SampleStore& samples = states_[patch_idx].samples;
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  float total = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Eigen::Vector2f uv = samples.at(i, pool_).uv;
-    const float weight = samples.count(i, pool_) * std::max(0.0f, 1.0f - uv.squaredNorm());
-    sum += weight * model_.colour(patch_idx, uv);
-    total += weight;
-  }
-  return total > 0.0f ? Eigen::Vector3f(sum / total) : Eigen::Vector3f(Eigen::Vector3f::Zero());
+  return sparse::mean_over_views(model_.patch(patch_idx), states_[patch_idx].samples, pool_);
 }
 
 }  // namespace

@@ -76,7 +76,8 @@ void Design::set_ridge(FunctionIdx idx) {
 
 void Design::set_ridge() {
   total_weight_ = columns::dot(root_weight_, root_weight_, padded_rows());
-  for (FunctionIdx idx = 0; idx < kLinearBase + atoms().size(); ++idx) {
+  const std::size_t count = kLinearBase + atoms().size();
+  for (FunctionIdx idx = 0; idx < count; ++idx) {
     if (evaluated_[idx]) set_ridge(idx);
   }
 }
@@ -125,7 +126,8 @@ void Design::evaluate(const TermList& terms) {
 }
 
 void Design::evaluate_all() {
-  for (FunctionIdx idx = kLinearBase; idx < kLinearBase + atoms().size(); ++idx) evaluate(idx);
+  const std::size_t count = kLinearBase + atoms().size();
+  for (FunctionIdx idx = kLinearBase; idx < count; ++idx) evaluate(idx);
 }
 
 void Design::reweigh(std::span<const float> factor) {
@@ -134,7 +136,8 @@ void Design::reweigh(std::span<const float> factor) {
   for (std::size_t row = 0; row < rows_; ++row) root.row[row] = std::sqrt(factor[row]);
   columns::scale(root, padded_rows(), root_weight_);
   for (Column& channel : colours_) columns::scale(root, padded_rows(), channel);
-  for (FunctionIdx idx = 0; idx < kLinearBase + atoms().size(); ++idx) {
+  const std::size_t count = kLinearBase + atoms().size();
+  for (FunctionIdx idx = 0; idx < count; ++idx) {
     if (evaluated_[idx]) columns::scale(root, padded_rows(), functions_[idx]);
   }
   set_ridge();

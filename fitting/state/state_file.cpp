@@ -151,7 +151,10 @@ Value StateReader::take() {
 
 void StateReader::check_block() {
   const std::uint64_t expected = hash_;
-  if (take<std::uint64_t>() != expected) fail("was altered: a checksum does not fit");
+  [[maybe_unused]] const bool fits = take<std::uint64_t>() == expected;
+#ifndef FUZZING_BUILD_MODE_UNSAFE_FOR_PRODUCTION  // altered files must reach what lies behind
+  if (!fits) fail("was altered: a checksum does not fit");
+#endif
   hash_ = kEmptyHash;
 }
 

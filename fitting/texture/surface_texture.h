@@ -43,8 +43,10 @@ class SurfaceTexture {
   [[nodiscard]] std::size_t page_count() const;
   /// The page that holds a texel.
   [[nodiscard]] std::size_t page_of(std::size_t texel_idx) const {
-    const auto width = static_cast<std::size_t>(atlas_.width);
-    return texel_idx / width / kPage * pages_per_row_ + texel_idx % width / kPage;
+    // An atlas has fewer texels than 2^32, and short divisions are quick ones.
+    const auto texel = static_cast<std::uint32_t>(texel_idx);
+    const auto width = static_cast<std::uint32_t>(atlas_.width);
+    return texel / width / kPage * pages_per_row_ + texel % width / kPage;
   }
   /// Texels that a page covers.
   [[nodiscard]] cv::Rect page(std::size_t page_idx) const;

@@ -72,6 +72,12 @@ void DistanceGrid::smooth(float limit_m, int rounds, int threads) {
   }
 }
 
+void DistanceGrid::cut_below(float z_m) {
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    values_[i] = std::max(values_[i], z_m - point(i).z());
+  }
+}
+
 Eigen::Vector3f DistanceGrid::gradient_at(const Eigen::Vector3f& point_m) const {
   const float h = 0.5F * cell_m_;
   Eigen::Vector3f gradient;

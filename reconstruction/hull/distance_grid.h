@@ -48,6 +48,9 @@ class DistanceGrid {
   /// times.
   void smooth(float limit_m, int rounds, int threads);
 
+  /// Takes away what lies below a height.
+  void cut_below(float z_m);
+
   /// Trilinear value; outside the grid that of its nearest place.
   [[nodiscard]] float value_at(const Eigen::Vector3f& point_m) const;
   /// Trilinear value's gradient by central differences of half a cell; not normalised.

@@ -18,7 +18,7 @@ constexpr std::size_t kFewestViews = 5;
 constexpr std::size_t kOneKnownIn = 4;  // of all views: what stands on the sheet is seen by most
 constexpr float kUnknown_px = -3000;    // below: silhouette_distance says that nothing is known
 constexpr float kOutside_m = 1;
-constexpr std::size_t kMostDisagreeing = 24;
+constexpr std::size_t kMostDisagreeing = 25;
 
 /// The k largest of the values offered, the smallest of them first to know.
 class Largest {
@@ -39,7 +39,8 @@ class Largest {
 
 float vote(const ViewSet& views, const std::vector<OutlineVote>& outlines,
            const CarvingVotes& votes, const Eigen::Vector3f& point) {
-  Largest surely(votes.wrong);
+  Largest beyond_blur(votes.wrong);
+  Largest surely(votes.wrong + (votes.blur_px > 0 ? 1 : 0));
   Largest all(votes.guesses_wrong);
   std::size_t known = 0;
   for (std::size_t v = 0; v < views.views.size(); ++v) {
@@ -54,10 +55,11 @@ float vote(const ViewSet& views, const std::vector<OutlineVote>& outlines,
     if (outlines[v].is_guessed.at<std::uint8_t>(static_cast<int>(pixel.y_px),
                                                 static_cast<int>(pixel.x_px)) == 0) {
       surely.offer(distance_m);
+      beyond_blur.offer(distance_m - votes.blur_px / project.px_per_m(pixel.depth_m));
     }
   }
   if (known < std::max(kFewestViews, views.views.size() / kOneKnownIn)) return kOutside_m;
-  return std::max(surely.kth(), all.kth());
+  return std::max({beyond_blur.kth(), surely.kth(), all.kth()});
 }
 
 }  // namespace
@@ -66,7 +68,7 @@ void carve_hull(const ViewSet& views, const std::vector<OutlineVote>& outlines,
                 const CarvingVotes& votes, const DistanceGrid* coarse, float band_m, int threads,
                 DistanceGrid& grid) {
   assert(votes.wrong >= 1 && votes.wrong <= votes.guesses_wrong &&
-         votes.guesses_wrong <= static_cast<int>(kMostDisagreeing));
+         votes.guesses_wrong < static_cast<int>(kMostDisagreeing));
   core::parallel_for(grid.count(), threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3f point = grid.point(i);
@@ -77,7 +79,7 @@ void carve_hull(const ViewSet& views, const std::vector<OutlineVote>& outlines,
           continue;
         }
       }
-      grid[i] = std::max(vote(views, outlines, votes, point), -point.z());
+      grid[i] = vote(views, outlines, votes, point);
     }
   });
 }

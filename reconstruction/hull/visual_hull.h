@@ -20,14 +20,16 @@ struct OutlineVote {
 struct CarvingVotes {
   int wrong = 1;          ///< the k-th largest distance counts, k >= 1
   int guesses_wrong = 1;  ///< >= wrong: the same, where distances before a guessed stage count, too
+  float blur_px = 0;      ///< above 0: within it of an outline one more view has to agree
 };
 
 /// The visual hull by distances as votes (study, step 4): phi of a point is the k-th largest over
 /// the views of its distance from the silhouette's outline, in metres at its depth; so k - 1 views
-/// may be wrong about it, more where the stage is guessed. Closed at z = 0. Points that fewer than
-/// a quarter of the views tell something about are outside. `outlines` has one entry per view. With
-/// a `coarse` grid only points nearer to its surface than `band_m` are computed anew, the others
-/// are its values.
+/// may be wrong about it, more where the stage is guessed. The outlines that carve farthest are
+/// those that lie wrong: nearer to them than `blur_px` one view is not enough. Closed at z = 0.
+/// Points that fewer than a quarter of the views tell something about are outside. `outlines` has
+/// one entry per view. With a `coarse` grid only points nearer to its surface than `band_m` are
+/// computed anew, the others are its values.
 void carve_hull(const ViewSet& views, const std::vector<OutlineVote>& outlines,
                 const CarvingVotes& votes, const DistanceGrid* coarse, float band_m, int threads,
                 DistanceGrid& grid);

@@ -30,13 +30,15 @@ constexpr int kCoarseWidth_px = 480;
 constexpr int kCoarsePasses = 5;
 constexpr std::size_t kOneViewIn = 32;   // may be wrong in the last pass,
 constexpr std::size_t kOneGuessIn = 6;   // where the stage is guessed
+constexpr float kOutlineBlur_px = 1.5F;  // by which one outline may lie wrong
 constexpr int kCoarseCells = 72;         // along the longest side
 constexpr std::size_t kMostViews = 120;  // of the last pass
 constexpr std::size_t kStageViews = 60;  // that the stage is learned from, at full size
 constexpr int kFineCells = 160;
 constexpr float kSmoothLimit_cells = 3;
-constexpr int kSmoothRounds = 2;  // against the steps of pixels
-constexpr float kFoot = 0.06F;    // of the space: objects stand on the sheet
+constexpr int kSmoothRounds = 2;      // against the steps of pixels
+constexpr float kFoot = 0.06F;        // of the space: objects stand on the sheet
+constexpr float kFootRounded_px = 1;  // by the triangles at the foot's edge
 constexpr float kMaskGrown_px = 2;
 
 /// What was found of the object so far.
@@ -176,6 +178,7 @@ class Measurement {
       DistanceGrid next(box, longest_side(box) / kCoarseCells, 1);
       carve_hull(views, work.votes(), votes_of_pass(pass, views.views.size()), nullptr, 0, threads_,
                  next);
+      next.cut_below(0);
       shape = pass + 1 < kCoarsePasses ? likeliest(std::move(next)) : checked(std::move(next));
     }
     return shape;
@@ -196,13 +199,16 @@ class Measurement {
 
     Eigen::AlignedBox3f box = grown(coarse, 0.06F);
     const float cell = longest_side(box) / kFineCells;
-    box.min().z() = -2 * cell;
+    const float foot_m = -kFootRounded_px * pixel_at(coarse.box.center());
+    box.min().z() = foot_m - 2 * cell;
     DistanceGrid grid(box, cell, 1);
     carve_hull(views_, work.votes(),
                {.wrong = one_in(kOneViewIn, views_.views.size()),
-                .guesses_wrong = one_in(kOneGuessIn, views_.views.size())},
+                .guesses_wrong = one_in(kOneGuessIn, views_.views.size()),
+                .blur_px = kOutlineBlur_px},
                &coarse.grid, 2.5F * coarse.grid.cell_m(), threads_, grid);
     grid.smooth(kSmoothLimit_cells * cell, kSmoothRounds, threads_);
+    grid.cut_below(foot_m);  // last, so that the foot's edge stays sharp
     return checked(std::move(grid));
   }
 

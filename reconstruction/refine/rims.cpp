@@ -19,6 +19,7 @@ constexpr float kLeastContrast = 0.06F;
 constexpr float kFullContrast = 0.2F;  // from which on a rim has full weight
 constexpr float kRound_px = 30;        // by which a surface may come nearer just within its rim
 constexpr float kJump_px = 6;          // depth step, in pixels' size, that makes a rim
+constexpr float kFoot_px = 6;          // above the sheet, where an object meets its own shadow
 
 struct Profile {
   float shift_px, weight;
@@ -119,6 +120,8 @@ class RimFinder {
     }
     const auto profile = on_stage ? against_stage(outline) : against_object(outline);
     if (!profile) return std::nullopt;
+    // The dark line where an object meets the sheet is neither's colour and seems to cut it short.
+    if (profile->shift_px < 0 && point.z() * px_per_m < kFoot_px) return std::nullopt;
     return RimPoint{{a, b}, share, profile->shift_px / px_per_m, profile->weight, on_stage};
   }
 

@@ -34,10 +34,12 @@ namespace sheen::render::gl {
   X(PFNGLDEPTHFUNCPROC, DepthFunc)                                     \
   X(PFNGLDEPTHMASKPROC, DepthMask)                                     \
   X(PFNGLDISABLEPROC, Disable)                                         \
+  X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)                 \
   X(PFNGLDRAWELEMENTSPROC, DrawElements)                               \
   X(PFNGLENABLEPROC, Enable)                                           \
   X(PFNGLENABLEVERTEXARRAYATTRIBPROC, EnableVertexArrayAttrib)         \
   X(PFNGLFRONTFACEPROC, FrontFace)                                     \
+  X(PFNGLGENERATETEXTUREMIPMAPPROC, GenerateTextureMipmap)             \
   X(PFNGLGETERRORPROC, GetError)                                       \
   X(PFNGLGETINTEGERVPROC, GetIntegerv)                                 \
   X(PFNGLGETPROGRAMINFOLOGPROC, GetProgramInfoLog)                     \
@@ -55,7 +57,9 @@ namespace sheen::render::gl {
   X(PFNGLTEXTUREBUFFERPROC, TextureBuffer)                             \
   X(PFNGLTEXTUREPARAMETERIPROC, TextureParameteri)                     \
   X(PFNGLTEXTURESTORAGE2DPROC, TextureStorage2D)                       \
+  X(PFNGLTEXTURESTORAGE3DPROC, TextureStorage3D)                       \
   X(PFNGLTEXTURESUBIMAGE2DPROC, TextureSubImage2D)                     \
+  X(PFNGLTEXTURESUBIMAGE3DPROC, TextureSubImage3D)                     \
   X(PFNGLUSEPROGRAMPROC, UseProgram)                                   \
   X(PFNGLVERTEXARRAYATTRIBBINDINGPROC, VertexArrayAttribBinding)       \
   X(PFNGLVERTEXARRAYATTRIBFORMATPROC, VertexArrayAttribFormat)         \

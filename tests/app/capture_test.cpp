@@ -69,10 +69,12 @@ class LiveCapture : public testing::Test {
     return nlohmann::json::parse(read_file(context_.report_path));
   }
 
-  /// The model that a replay makes of the recording, from the command line.
+  /// The model that a replay makes of the recording, from the command line. How large texels are
+  /// is measured on poses, of which a capture has none when it begins.
   std::string replay() const {
     const auto model = folder_.path() / "replay.glb";
-    const ProgramRun run = run_sheen({"replay", options_.session, "-o", model, "--quiet"});
+    const ProgramRun run = run_sheen({"replay", options_.session, "-o", model, "--texel-mm",
+                                      report()["options"]["texel-mm"].dump(), "--quiet"});
     EXPECT_EQ(run.exit_code, 0) << run.standard_error;
     return read_file(model);
   }

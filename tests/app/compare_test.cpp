@@ -141,8 +141,9 @@ class Compare : public testing::Test {
 
 void expect_finite_figures(const nlohmann::json& row) {
   for (const char* name :
-       {"psnr", "live_psnr", "ssim", "rmse", "fit_ms", "fit_ms_per_frame", "render_ms_per_view",
-        "coefficients_per_patch", "model_bytes", "light_field_bytes"}) {
+       {"psnr", "live_psnr", "worst_psnr", "box_psnr", "edge_difference", "pop_ratio", "ssim",
+        "rmse", "fit_ms", "fit_ms_per_frame", "render_ms_per_view", "coefficients_per_patch",
+        "model_bytes", "light_field_bytes"}) {
     // Photographs are no patches.
     if (name == std::string("coefficients_per_patch") && row.at("patches") == 0) continue;
     ASSERT_TRUE(row.at(name).is_number()) << name;  // NaN and infinity are null in JSON

@@ -50,7 +50,7 @@ TEST(RepresentationOptions, ApplyToThoseThatHaveThem) {
 }
 
 TEST(RepresentationOptions, ImplyTheFirstThatHasThemAll) {
-  EXPECT_EQ(resolve_representation("", {}).representation, "sparse");  // the default
+  EXPECT_EQ(resolve_representation("", {}).representation, "detail");  // the default
   const auto all = options_by_representation();
   const auto first_with = [&](const std::string& name) {
     const auto registry = fitting::representations();
@@ -126,19 +126,22 @@ TEST_F(ReplayChoice, ContradictionsAreRefused) {
   expect_refused({"--fitter", "octree"}, {"octree", "quadtree"});
   expect_refused({"--patches", "detail", "--fitter", "quadtree"}, {"--patches detail", "iwls"});
   expect_refused({"--patches", "texel", "--representation", "detail"}, {"--patches texel"});
+  expect_refused({"--patches", "vertex", "--representation", "detail"}, {"--patches vertex"});
+  expect_refused({"--patches", "vertex", "--texel-mm", "2"}, {"--texel-mm", "sparse"});
   expect_refused({"--representation", "wavelets"}, {"wavelets", "sparse"});
 }
 
 TEST_F(ReplayChoice, ReportAndModelNameWhatRan) {
-  EXPECT_FALSE(expect_fits({}, "sparse").contains("layout"));
+  EXPECT_FALSE(expect_fits({}, "detail").contains("layout"));
   EXPECT_TRUE(expect_fits({"--fitter", "sparse"}, "sparse").contains("tolerance"));
   EXPECT_EQ(expect_fits({"--fitter", "quadtree"}, "iwls").at("fitter"), "quadtree");
   EXPECT_EQ(expect_fits({"--representation", "iwls"}, "iwls").at("fitter"), "quadtree");
   EXPECT_EQ(expect_fits({"--fitter", "batch", "--layout", "disk"}, "iwls").at("layout"), "disk");
   EXPECT_EQ(expect_fits({"--representation", "sh", "--degree", "2"}, "sh").at("degree"), 2);
-  EXPECT_EQ(expect_fits({"--tolerance", "0.02"}, "sparse").at("tolerance").get<float>(), 0.02f);
-  static_cast<void>(expect_fits({"--representation", "mean"}, "mean"));
+  EXPECT_EQ(expect_fits({"--tolerance", "0.02"}, "detail").at("tolerance").get<float>(), 0.02f);
   EXPECT_EQ(expect_fits({"--patches", "detail"}, "detail").at("patches"), "detail");
+  EXPECT_EQ(expect_fits({"--patches", "vertex"}, "sparse").at("patches"), "vertex");
+  EXPECT_EQ(expect_fits({"--representation", "mean"}, "mean").at("patches"), "vertex");
   EXPECT_EQ(expect_fits({"--representation", "detail"}, "detail").at("patches"), "detail");
   static_cast<void>(expect_fits({"--texel-mm", "2"}, "detail"));
 }

@@ -31,7 +31,7 @@ LIBRARIES = {
     r"GL/|EGL/|OSMesa|epoxy": {"render"},
     r"CLI/": {"app/command_line", "bench"},
     r"apriltag/|opencv2/(calib3d|videoio|aruco)": {"capture", "bench/micro"},
-    r"embree3/|draco/|meshoptimizer": {"core"},
+    r"embree3/|draco/|meshoptimizer|libqhull": {"core"},
     r"libav|libsw|lcms2|pugixml": {"capture"},
     r"nlohmann/": set(MODULES) - {"pipeline"},
 }

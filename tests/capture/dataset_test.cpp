@@ -221,6 +221,25 @@ TEST(Dataset, RealTransformsOfInstantNgp) {
   }
 }
 
+// Files may repeat the camera at every image, or have as many as images.
+TEST(Dataset, CamerasAreKeptOnce) {
+  const TemporaryFolder folder;
+  std::string frames;
+  for (int i = 0; i < 60; ++i) {
+    frames += std::string(i == 0 ? "" : ",") + R"({"file_path": "a)" + std::to_string(i) +
+              R"(.png", "fl_x": )" + std::to_string(50 + i % 20) +
+              R"(, "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,0]]})";
+  }
+  write_file(folder.path() / "transforms.json",
+             R"({"w": 64, "h": 48, "frames": [)" + frames + "]}");
+  const Dataset dataset = read_dataset(folder.path(), {});
+  ASSERT_EQ(dataset.cameras.size(), 20U);
+  for (std::size_t i = 0; i < 60; ++i) {
+    EXPECT_EQ(dataset.cameras[dataset.frames[i].camera].intrinsics().focal_px.x(),
+              50.0 + static_cast<double>(i % 20));
+  }
+}
+
 /// A session of one frame per image; the mesh is only copied.
 TEST(Dataset, ImportMakesASessionInTheOrderOfNames) {
   const TemporaryFolder folder;

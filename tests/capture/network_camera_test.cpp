@@ -3,7 +3,7 @@
 
 #include "capture/session/camera_recording.h"
 #include "capture/source/arrival_clock.h"
-#include "capture/source/http_images.h"
+#include "capture/source/network_address.h"
 #include "capture/source/open_camera.h"
 #include "tests/capture/expect_bad_input.h"
 #include "tests/capture/recording_frames.h"
@@ -88,6 +88,7 @@ TEST(ShownAddress, HoldsNoCredentials) {
   EXPECT_EQ(shown_address("http://phone/video?user=me&pwd=secret"), "http://phone/video");
   EXPECT_EQ(shown_address("http://me:se/cret@phone/video"), "http://...");
   EXPECT_EQ(shown_address("rtsp://me:secret@phone"), "rtsp://phone");
+  EXPECT_EQ(shown_address("rtsp://cam/user=me_password=secret_channel=1.sdp"), "rtsp://cam");
   EXPECT_EQ(shown_address("/dev/video0"), "/dev/video0");
 }
 
@@ -329,7 +330,7 @@ TEST(OpenCamera, RefusesWhatANetworkCameraDoesNotTake) {
                    "set them in the app");
   wish.device = "rtsp://me:secret@127.0.0.1:9/stream";
   expect_bad_input([&] { static_cast<void>(open_camera(wish)); }, "rtsp://127.0.0.1:9/stream",
-                   "MJPEG");
+                   "set them in the app");
 }
 
 TEST(ArrivalClock, SteadiesAnEvenStreamWithoutTrailingIt) {

@@ -220,6 +220,21 @@ TEST(CameraPath, StaysInItsBandAndMovesSmoothly) {
 }
 
 /// One small scene for the tests that look at it.
+// One round at one elevation and distance, held-out views half way between frames.
+TEST(CameraPath, TurntableStandsStill) {
+  const Eigen::Vector3d centre(0.01, 0.02, 0.05);
+  const CameraPath path(turntable_path(2.5), centre, 0.06);
+  const Eigen::Vector3d first = path.board_from_camera(0).translation() - centre;
+  EXPECT_NEAR(std::atan2(first.y(), first.x()), 2.5 * std::numbers::pi / 180, 1e-9);
+  for (int i = 1; i <= 72; ++i) {
+    const Eigen::Isometry3d pose = path.board_from_camera(i / 72.0);
+    const Eigen::Vector3d eye = pose.translation() - centre;
+    EXPECT_NEAR(eye.norm(), first.norm(), 1e-9);
+    EXPECT_NEAR(eye.z(), first.z(), 1e-9);
+    EXPECT_NEAR(pose.linear().col(0).z(), 0, 1e-9);  // rows are level
+  }
+}
+
 class SceneTest : public testing::Test {
  protected:
   static void SetUpTestSuite() { scene_ = std::make_unique<Scene>(make_scene(options())); }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/diagnostics/error.h"
+#include "core/files/read_file.h"
 #include "core/mesh/neighbours.h"
 #include "core/mesh/read_mesh.h"
 #include "tests/core/shapes.h"
@@ -159,6 +160,23 @@ TEST(ReadMesh, InsideOutHardCubeIsTurnedWithItsNormals) {
   const Mesh mesh = read_mesh(folder / "cube.ply");
   EXPECT_EQ(mesh.normals, cube.normals);
   EXPECT_EQ(mesh.triangles, cube.triangles);
+}
+
+TEST(WritePly, ConfidenceIsShownFromRedToGreen) {
+  const TemporaryFolder folder;
+  const Mesh cube = hard_cube();
+  std::vector<float> confidence(cube.positions.size(), 0.5F);
+  confidence.front() = 0;
+  confidence[1] = 1;
+  write_ply(folder / "cube.ply", cube, confidence);
+  EXPECT_EQ(read_mesh(folder / "cube.ply").positions, cube.positions);
+  // A vertex is 6 floats, its confidence and 3 bytes: 31 bytes.
+  const std::string bytes = read_file(folder / "cube.ply");
+  const std::size_t body = bytes.find("end_header\n") + 11;
+  const auto colour = [&](std::size_t vertex) { return bytes.substr(body + 31 * vertex + 28, 3); };
+  EXPECT_EQ(colour(0), std::string("\xff\x00\x00", 3));
+  EXPECT_EQ(colour(1), std::string("\x00\xff\x00", 3));
+  EXPECT_EQ(colour(2), std::string("\xff\xff\x00", 3));
 }
 
 TEST(ReadMesh, PlyRoundTripIsExact) {

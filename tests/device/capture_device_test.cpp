@@ -36,17 +36,21 @@ std::vector<std::vector<std::uint8_t>> compressed_images(const std::filesystem::
   return images;
 }
 
+/// Given to both: a replay would measure it, which a capture cannot before it has begun.
+constexpr const char* kTexel_mm = "0.4";
+
 /// Runs `sheen capture` on the loopback for so many images, as the sample session was recorded.
 tests::ProgramRun capture(const std::string& session, int images) {
   return run_sheen({"capture", loopback_node, "-o", session, "--like", tests::sample_session(),
-                    "--headless", "--frames", std::to_string(images), "--json"});
+                    "--headless", "--frames", std::to_string(images), "--texel-mm", kTexel_mm,
+                    "--json"});
 }
 
 /// The model that the capture fitted live is that of a replay of what it recorded.
 void expect_replays_to_its_model(const std::string& session) {
   const TemporaryFolder folder;
   const std::string model = folder.path() / "model.glb";
-  const auto replay = run_sheen({"replay", session, "-o", model});
+  const auto replay = run_sheen({"replay", session, "-o", model, "--texel-mm", kTexel_mm});
   ASSERT_EQ(replay.exit_code, 0) << replay.standard_error;
   EXPECT_EQ(read_file(session + "/model.glb"), read_file(model));
 }

@@ -3,6 +3,10 @@
 #include "evaluation/billboards/billboard_errors.h"
 
 #include "capture/synthetic/torus_knot.h"
+#include "evaluation/comparison/smooth_path.h"
+#include "fitting/descriptor.h"
+#include "render/context/context.h"
+#include "render/renderer.h"
 
 #include <gtest/gtest.h>
 
@@ -44,7 +48,7 @@ TEST(BillboardErrors, HaveALeastInBetweenWithHardOutlines) {
 
 // Antialiased, only the parallax is left: the error of orthographic frames falls, and totals do.
 TEST(BillboardErrors, FallWithDistanceWhenAntialiased) {
-  const auto errors = errors_of({64, 2}, 60, 0);
+  const auto errors = errors_of({64, 4}, 60, 0);
   for (std::size_t i = 2; kDistances[i] <= 16; ++i) {
     EXPECT_LT(errors.average[i], errors.average[i - 1]) << kDistances[i];
   }
@@ -57,6 +61,32 @@ TEST(BillboardErrors, AreSmallWhereAFrameWasBaked) {
   const auto orthographic = errors_of({64, 2}, 60, 0);
   EXPECT_LT(baked_here.average[1], 0.3 * orthographic.average[1]);
   EXPECT_GT(baked_here.average[3], orthographic.average[3]);
+}
+
+// From one nearest frame of 80 to the next everything moves at once; blended, frames come and go.
+TEST(PopRatio, IsLargeForTheNearestBillboardAndSmallForBlendedOnes) {
+  const core::Mesh mesh = capture::synthetic::torus_knot(3000);
+  core::CameraModel::Intrinsics in;
+  in.width_px = 160;
+  in.height_px = 120;
+  in.focal_px.setConstant(180);
+  in.principal_px = {79.5, 59.5};
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() << 0, 1, 0, 0, 0, -1, -1, 0, 0;  // from +x, z up
+  pose.translation().z() = 0.4;
+  const SmoothPath path =
+      smooth_path(core::CameraModel(in), pose, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ());
+  const auto context = render::make_osmesa_context();
+  const auto ratio = [&](const char* blending) {
+    const auto fitter = fitting::make_fitter(
+        "billboard", mesh,
+        {{"directions", "80"}, {"billboard-size", "64"}, {"billboard-blending", blending}});
+    fitter->finish();
+    const auto renderer = render::make_renderer(*context, mesh, fitter->light_field());
+    return pop_ratio(*renderer, path);
+  };
+  EXPECT_GT(ratio("nearest"), 5);
+  EXPECT_LT(ratio("blended"), 2);
 }
 
 }  // namespace

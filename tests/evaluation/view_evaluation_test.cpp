@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "evaluation/views/view_evaluation.h"
 
+#include "evaluation/comparison/outline_error.h"
+
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
 
@@ -55,6 +57,26 @@ TEST(CompareView, OnlyTheObjectCounts) {
   // Of four pixels' width nothing is left after two are taken from either side.
   EXPECT_FALSE(
       compare_view(0, true_in(kObject, truth), photograph, filled({10, 10, 4, 4}, CV_8UC1, 255)));
+}
+
+// The left half of the object is drawn, the rest is a hole; the band is the object's left column.
+TEST(OutlineError, CountsHolesEdgesAndWhatIsDrawnBesideTheObject) {
+  const cv::Scalar truth = cv::Scalar::all(128);
+  const cv::Mat photograph(kSize, CV_8UC3, truth);
+  const cv::Mat mask = filled(kObject, CV_8UC1, 255);
+  const cv::Mat band = filled({40, 30, 1, 60}, CV_8UC1, 255);
+  const auto exact = outline_error(true_in(kObject, truth), photograph, mask, band);
+  EXPECT_EQ(exact.box_psnr_db, 99);
+  EXPECT_EQ(exact.edge_difference, 0);
+  EXPECT_EQ(exact.hole_fraction, 0);
+  const auto half = outline_error(true_in({40, 30, 40, 60}, truth), photograph, mask, band);
+  EXPECT_DOUBLE_EQ(half.hole_fraction, 0.5);
+  EXPECT_EQ(half.edge_difference, 0);
+  // A column too many at the left, in a box of 86 x 66 pixels.
+  const auto wide = outline_error(true_in({39, 30, 81, 60}, truth), photograph, mask, band);
+  EXPECT_NEAR(wide.box_psnr_db, -10 * std::log10(std::pow(128 / 255.0, 2) * 60 / (86 * 66)), 1e-9);
+  const auto none = outline_error(true_in({0, 0, 10, 10}, truth), photograph, mask, band);
+  EXPECT_EQ(none.edge_difference, 128);
 }
 
 }  // namespace

@@ -176,6 +176,34 @@ def check_import(sheen, dataset, poses, camera, folder):
     assert worst < 1e-6, worst
 
 
+def scaled(dataset, name, turn, scale, shift):
+    """The data set's transforms.json with its world turned, scaled and moved."""
+    file = json.loads((dataset / "transforms.json").read_text())
+    for frame in file["frames"]:
+        matrix = np.array(frame["transform_matrix"])
+        matrix[:3] = np.column_stack([turn @ matrix[:3, :3], scale * turn @ matrix[:3, 3] + shift])
+        frame["transform_matrix"] = matrix.tolist()
+    (dataset / name).write_text(json.dumps(file))
+    return dataset / name
+
+
+def check_import_by_tags(sheen, dataset, board, poses, camera, folder):
+    """Poses in axes and units of their own come back to the board that the pictures show."""
+    turn = rotation(0.5, 0.5, -0.1, np.sqrt(0.49))
+    file = scaled(dataset, "elsewhere.json", turn, 7.3, [1, -2, 0.5])
+    report = json.loads(run(sheen, "import", file, "--mesh", dataset / "object.ply", "--board", board, "-o", folder,
+                            "--json", "--quiet"))
+    back, true = from_poses(folder / "poses.txt", folder / "camera.yaml"), from_poses(poses, camera)
+    places = lambda views: np.array([-turn.T @ shift for turn, shift in (views.poses[i] for i in sorted(views.poses))])
+    worst = 1000 * np.linalg.norm(places(back) - places(true), axis=1).max()
+    scale = report["metres_per_unit"] * 7.3
+    print(f"  imported by its tags: scale {scale:.6f} of the true one, cameras within {worst:.3f} mm")
+    assert abs(scale - 1) < 1e-3 and worst < 1, (scale, worst)
+    # The mesh follows the poses.
+    place = np.reshape(json.loads((folder / "session.json").read_text())["object"]["T_stage_object"], (4, 4))
+    assert np.allclose(place[:3, :3], turn.T, atol=2e-3), place
+
+
 def check_masks(dataset):
     try:
         from PIL import Image
@@ -237,6 +265,7 @@ def check_session(sheen, session, dictionary, with_colmap, folder):
     assert held_out and all(frame_of(image) % 5 == 2 for image in held_out)
     assert len(held_out) + len(file["train_filenames"]) == len(file["frames"])
     check_import(sheen, plain, poses, session / "camera.yaml", folder / f"{name}-imported")
+    check_import_by_tags(sheen, plain, session / "board.yaml", poses, session / "camera.yaml", folder / f"{name}-by-tags")
 
     straight = folder / f"{name}-straight"
     run(sheen, "export", session, "-o", straight, "--format", "nerfstudio", "--undistort", *choice)
@@ -250,6 +279,50 @@ def check_session(sheen, session, dictionary, with_colmap, folder):
     check_import(sheen, project, poses, session / "camera.yaml", folder / f"{name}-imported-colmap")
     if with_colmap:
         check_colmap(project, folder / f"{name}-triangulated")
+
+
+def camera_numbers(session):
+    data = re.findall(r"data: \[(.*?)\]", (session / "camera.yaml").read_text(), re.DOTALL)
+    matrix, distortion = ([float(n) for n in numbers.split(",")] for numbers in data)
+    return [matrix[0], matrix[4], matrix[2], matrix[5]], distortion
+
+
+KALIBR = """cam0:
+  camera_model: pinhole
+  distortion_model: radtan
+  distortion_coeffs: [0.0578421, -0.0805099, -0.000980296, 0.00015575]
+  intrinsics: [687.76, 687.245, 276.779, 482.134]
+  resolution: [540, 960]
+"""
+
+
+def check_real_imports(sheen, data, folder):
+    """Data sets of others, with the camera and the scale given beside them."""
+    if (data / "temple").exists():
+        temple = data / "temple"
+        run(sheen, "export", temple, "-o", folder / "temple", "--format", "nerfstudio", "--end", 8, "--quiet")
+        file = scaled(folder / "temple", "units.json", np.eye(3), 12.5, 0)
+        run(sheen, "import", file, "--mesh", temple / "object.ply", "--camera", temple / "camera.yaml",
+            "--known-distance", 12.5, 1, "-o", folder / "temple-back", "--quiet")
+        back = np.loadtxt(folder / "temple-back" / "poses.txt")
+        assert np.abs(back[:, :4] - np.loadtxt(temple / "poses.txt")[:8, :4]).max() < 1e-6
+        assert camera_numbers(folder / "temple-back")[0] == camera_numbers(temple)[0]
+        print("temple: comes back with --camera and --known-distance")
+    if (data / "fox").exists():
+        (folder / "camchain.yaml").write_text(KALIBR)
+        mesh = folder / "triangle.ply"
+        mesh.write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+        for name, options in {"fox-own": [], "fox-kalibr": ["--camera", folder / "camchain.yaml"]}.items():
+            run(sheen, "import", data / "fox" / "transforms.json", "--mesh", mesh, "--known-distance", 4, 0.5, *options,
+                "-o", folder / name, "--quiet")
+            frames = sorted(json.loads((data / "fox" / "transforms.json").read_text())["frames"], key=lambda f: f["file_path"])
+            places = [np.array(frame["transform_matrix"])[:3, 3] / 8 for frame in frames]
+            assert np.abs(np.loadtxt(folder / name / "poses.txt")[:, 1:4] - places).max() < 1e-6
+        # The file's own camera and Kalibr's are one: half a pixel apart by their conventions.
+        assert np.allclose(camera_numbers(folder / "fox-own")[0], camera_numbers(folder / "fox-kalibr")[0], atol=1e-9)
+        assert np.allclose(camera_numbers(folder / "fox-own")[1][:4], camera_numbers(folder / "fox-kalibr")[1][:4])
+        print("fox: imported, its own camera and Kalibr's file of the same give one session")
 
 
 def check_refusals(sheen, session, folder):
@@ -273,6 +346,7 @@ def main():
         folder.mkdir(exist_ok=True)
         check_refusals(sheen, repository / "sample_data" / "glossy", folder)
         check_session(sheen, repository / "sample_data" / "glossy", "DICT_APRILTAG_36h11", False, folder)
+        check_real_imports(sheen, box.parent, folder)
         if box.exists():
             check_session(sheen, box, "DICT_6X6_250", True, folder)
         else:

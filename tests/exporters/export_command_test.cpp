@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "capture/source/video_source.h"
+#include "core/geometry/tangent_frame.h"
+#include "core/mesh/read_mesh.h"
 #include "exporters/format.h"
+#include "exporters/viewer/first_view.h"
 #include "tests/app/program.h"
 #include "tests/fitting/models_for_tests.h"
 
@@ -139,8 +142,67 @@ TEST_F(Export, RefusesWhatCannotBe) {
   expect_refused({"-o", folder_ / "m.html", "--up", "-w"}, "--up");
   write_file(folder_ / "poster.png", "GIF89a");
   expect_refused({"-o", folder_ / "m.html", "--poster", folder_ / "poster.png"}, "PNG");
-  expect_refused({"-o", folder_ / "m.html", "--poster", folder_ / "none.png"}, "none.png");
+  const auto nowhere = folder_ / "poster.png" / "none.png";
+  expect_refused({"-o", folder_ / "m.html", "--poster", nowhere}, "none.png");
   EXPECT_FALSE(std::filesystem::exists(folder_ / "m.html"));
+}
+
+// An octahedron of radius 1 seen from a corner's axis: the sphere takes 0.86 of the picture, its
+// middle is the object, its corners are not.
+TEST_F(Export, DrawsAPosterThatDoesNotExist) {
+  write("mean");
+  const auto poster = folder_ / "poster.png";
+  const std::vector<std::string> arguments{
+      "export", folder_ / "model.glb", "-o", folder_ / "m.html", "--poster", poster, "--quiet"};
+  ASSERT_EQ(run_sheen(arguments).exit_code, 0);
+  const cv::Mat picture = cv::imread(poster.string(), cv::IMREAD_UNCHANGED);
+  ASSERT_EQ(picture.type(), CV_8UC4);
+  EXPECT_EQ(picture.at<cv::Vec4b>(picture.rows / 2, picture.cols / 2)[3], 255);
+  EXPECT_EQ(picture.at<cv::Vec4b>(0, 0)[3], 0);
+  EXPECT_NE(read_file(folder_ / "m.html").find("id=\"poster\""), std::string::npos);
+  // What is there already is a user's picture and stays.
+  write_file(poster, "\x89PNG\r\n\x1a\n");
+  ASSERT_EQ(run_sheen(arguments).exit_code, 0);
+  EXPECT_EQ(read_file(poster), "\x89PNG\r\n\x1a\n");
+}
+
+// Every patch was looked at from about where +x points to. Two cells of directions from there count
+// as supported: 0.5 to 0.75 of the disc, up to 49 degrees.
+TEST(FirstView, IsWherePhotographsWereTaken) {
+  const core::Mesh mesh = fitting::testing::octahedron();
+  fitting::SeenDirections seen;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const auto towards = core::direction_towards(core::tangent_frame(mesh.normals[i]),
+                                                 mesh.positions[i], {10, 0, 0});
+    const auto cell = fitting::guidance::cell_bit(fitting::guidance::cell_of(towards.uv));
+    seen.push_back(fitting::guidance::dilated(cell));
+  }
+  const auto view = exporters::viewer::first_view(mesh, seen, "z");
+  EXPECT_GT(view.towards_eye.x(), 0.65);
+  EXPECT_NEAR(view.towards_eye.norm(), 1, 1e-9);
+  EXPECT_DOUBLE_EQ(exporters::viewer::first_view(mesh, {}, "z").azimuth_rad, -1);
+}
+
+// The sets are kept bit for bit, in PLY and in glTF.
+TEST_F(Export, TakesConfidenceAlong) {
+  const core::Mesh mesh = fitting::testing::octahedron();
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) seen_.push_back(0x0123456789abcdefU << i);
+  write("mean");
+  for (const char* name : {"m.ply", "m.glb", "m.usda"}) {
+    ASSERT_EQ(
+        run_sheen({"export", folder_ / "model.glb", "-o", folder_ / name, "--quiet"}).exit_code, 0);
+  }
+  const std::string ply = read_file(folder_ / "m.ply");
+  const std::string glb = read_file(folder_ / "m.glb");
+  EXPECT_NE(ply.find("property float confidence\nproperty ushort seen_0\n"), std::string::npos);
+  EXPECT_NE(glb.find("\"_CONFIDENCE\""), std::string::npos);
+  EXPECT_NE(read_file(folder_ / "m.usda").find("primvars:confidence"), std::string::npos);
+  for (const std::uint64_t set : seen_) {
+    const std::string bytes(reinterpret_cast<const char*>(&set), sizeof set);
+    EXPECT_NE(ply.find(bytes), std::string::npos);
+    EXPECT_NE(glb.find(bytes), std::string::npos);
+  }
+  EXPECT_EQ(core::read_mesh(folder_ / "m.ply").positions, mesh.positions);
 }
 
 TEST(FormatOf, GoesByTheEndingWhateverItsCase) {

@@ -54,8 +54,8 @@ class FadedLightField final : public fitting::PatchLightField {
 TEST(Fading, CostsNothingOnViewsLikeThoseOfTheFit) {
   // Fit the sample.
   const tests::TemporaryFolder folder;
-  const auto run = tests::run_sheen(
-      {"replay", tests::sample_session().string(), "-o", folder / "model.glb", "--quiet"});
+  const auto run = tests::run_sheen({"replay", tests::sample_session().string(), "-o",
+                                     folder / "model.glb", "--patches", "vertex", "--quiet"});
   ASSERT_EQ(run.exit_code, 0) << run.standard_error;
   const fitting::Model model = fitting::read_model(folder / "model.glb");
   ASSERT_EQ(model.seen.size(), model.mesh.positions.size());

@@ -224,6 +224,32 @@ def check_splat_pictures(sheen, session, splats, folder):
     assert np.mean(scores) > 22, scores
 
 
+def check_foreign_pictures(session, splats, folder):
+    """The same picture by viewers of others. Their discs end earlier than the reference's, which is seen at outlines."""
+    import splat_viewers
+    if missing := splat_viewers.missing():
+        print(f"  not drawn by viewers of others, missing: {', '.join(missing)}")
+        return
+    file = json.loads((folder / "views" / "transforms.json").read_text())
+    place = np.reshape(json.loads((session / "session.json").read_text())["object"]["T_stage_object"], (4, 4))
+    board_from_camera = np.array(file["frames"][0]["transform_matrix"]) @ np.diag([1.0, -1.0, -1.0, 1.0])
+    y_down = np.array([[1.0, 0, 0, 0], [0, 0, 1, 0], [0, -1, 0, 0], [0, 0, 0, 1]])  # object from splats
+    pose = np.linalg.inv(board_from_camera) @ place @ y_down
+    y_up = pose @ np.diag([1.0, -1.0, -1.0, 1.0])
+    size, focal, centre = (file["w"], file["h"]), np.array([file["fl_x"], file["fl_y"]]), np.array([file["cx"], file["cy"]])
+    ours = 255 * np.clip(splat_picture(splats, pose[:3], focal, centre, size), 0, 1)
+    shown = ours.max(axis=2) > 8
+    distance = np.linalg.norm(pose[:3, 3])
+    projection = splat_viewers.clip_from_camera(focal, centre, size, 0.1 * distance, 10 * distance)
+    files = [folder / name for name in FILES[4:]]
+    for viewer, name, picture in splat_viewers.draw(files, [pose[:3], y_up[:3], y_up[:3]], projection, size, folder / "viewers"):
+        difference = np.abs(picture - ours)
+        inside = difference[eroded(shown)]
+        print(f"  {viewer:<6}{name:<17} mean difference {difference[shown].mean():.2f} of 255, inside the outline "
+              f"{inside.mean():.2f}, 99 % of it below {np.quantile(inside, .99):.0f}")
+        assert difference[shown].mean() < 6 and inside.mean() < 4, (viewer, name)
+
+
 def foreign_facts(repository, files):
     foreign = repository / "tests" / "exporters" / "foreign"
     if not shutil.which("node") or not (foreign / "node_modules").exists():
@@ -304,9 +330,11 @@ def check_texture(folder, name):
         + down * ((1 - right) * image[top + 1, left] + right * image[top + 1, left + 1])
     data = (folder / "mesh.ply").read_bytes().split(b"end_header\n", 1)
     count = int(data[0].split(b"element vertex ")[1].split()[0])
-    vertex = np.frombuffer(data[1], np.dtype([("p", "<f4", 6), ("c", "u1", 3)]), count)
+    vertex = np.frombuffer(data[1], np.dtype([("p", "<f4", 6), ("c", "u1", 3), ("confidence", "<f4"), ("seen", "<u2", 4)]), count)
     used = np.unique(numbers(document["meshes"][0]["primitives"][0]["indices"]))
     used = used[used < count]
+    assert np.array_equal(numbers(attributes["_CONFIDENCE"])[:count, 0], vertex["confidence"])
+    assert np.array_equal(numbers(attributes["_SEEN"])[:count], vertex["seen"]) and vertex["seen"].any()
     difference = np.abs(read[used] - vertex["c"][used])
     print(f"  {name}: texture at the vertices within {difference.mean():.2f} of 255 on average, worst {difference.max():.0f}")
     assert difference.mean() < 1.5 and np.quantile(difference, 0.99) < 30, difference.mean()
@@ -325,11 +353,13 @@ def check_model(sheen, repository, patches, folder):
         views = report["cost"]["on_views"]
         size = sum(file["bytes"] for file in report["files"])
         print(f"  {name:<17}{size:>9} bytes, {views['converted_db']:.2f} dB on views, the model {views['model_db']:.2f}")
-    _, numbers = read_glb(folder / "mesh.glb")
-    triangles = read_glb(folder / "mesh.glb")[0]["accessors"][3]["count"] // 3
+    document, numbers = read_glb(folder / "mesh.glb")
+    triangles = len(numbers(document["meshes"][0]["primitives"][0]["indices"])) // 3
     check_texture(folder, patches)
     splats = check_splats(folder)
     check_splat_pictures(sheen, sample / "held_out", read_splat_ply(folder / FILES[4]), folder)
+    if patches == "vertex":
+        check_foreign_pictures(sample / "held_out", read_splat_ply(folder / FILES[4]), folder)
     check_assimp(folder)
     facts = foreign_facts(repository, [folder / name for name in FILES])
     if facts:

@@ -44,7 +44,8 @@ const std::vector<WritingCommand>& commands() {
   static const std::vector<WritingCommand> all{
       {"replay",
        {"replay", "SESSION", "-o", "OUT/model.glb", "--mean-out", "OUT/mean.glb", "--poses-out",
-        "OUT/poses.txt", "--state", "OUT/fit.state", "--report", "OUT/report.json"},
+        "OUT/poses.txt", "--patches", "vertex", "--state", "OUT/fit.state", "--report",
+        "OUT/report.json"},
        {"model.glb", "mean.glb", "poses.txt", "fit.state"}},
       {"replay_detail",
        {"replay", "SESSION", "-o", "OUT/model.glb", "--patches", "detail"},

@@ -149,7 +149,7 @@ TEST(Fitter, CountsEveryStoredNumber) {
 }
 
 TEST(Registry, RefusesWhatItDoesNotKnow) {
-  EXPECT_EQ(testing::representation_names().front(), "sparse");  // the default
+  EXPECT_EQ(representations().front()->name, "detail");  // the default
   EXPECT_THROW(make_isolated_patches("nonsense", 1), std::invalid_argument);
   for (const iwls::Options& options :
        {iwls::Options{{}, {}, 17, 3, false}, iwls::Options{{}, {}, 16, 2, false},

@@ -43,7 +43,7 @@ std::string bytes_of(const core::Mesh& mesh, const LightField& light_field) {
 
 /// Makes a fit cheap where it could be large: what is checked does not depend on sizes.
 OptionValues small_options(const Descriptor& one) {
-  const OptionValues small{{"directions", "20"}, {"billboard-size", "64"}};
+  const OptionValues small{{"directions", "20"}, {"billboard-size", "64"}, {"texture-side", "128"}};
   OptionValues values;
   for (const FitOption& option : one.default_options()->table()) {
     if (const auto found = small.find(option.name); found != small.end()) values.insert(*found);

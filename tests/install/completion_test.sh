@@ -13,7 +13,7 @@ offers() {
 }
 
 offers "register replay resume render" sheen re
-offers "vertex texel detail" sheen replay --patches ""
+offers "auto vertex texel detail" sheen replay --patches ""
 offers "mjpeg" sheen capture --format m
 offers "--contact-sheet" sheen evaluate model.glb --co
 offers "" sheen replay SES  # files are the shell's own business

@@ -67,7 +67,7 @@ class Module(unittest.TestCase):
             self.model.write(path)
             back = sheen.read_model(path)
             self.assertIsNone(back.frames)
-            self.assertEqual(back.representation, "sparse")
+            self.assertEqual(back.representation, "detail")
             np.testing.assert_array_equal(back.positions, self.model.positions)
             patches = np.arange(0, back.patch_count, 7)
             np.testing.assert_array_equal(back.evaluate(patches, back.normals[patches]),

@@ -20,13 +20,14 @@ function uprightAxes(name) {
 }
 
 export class OrbitCamera {
-  constructor(centre, radius, up) {
+  /** `home`: azimuth and elevation that it begins with, radians. */
+  constructor(centre, radius, up, home) {
     this.axes = uprightAxes(up);
     this.centre = centre;
     this.radius = radius;
     this.aspect = 1;
     this.lift = 0;  // share of the height, at the bottom, that the object keeps clear of
-    this.home = { azimuth: -1, elevation: 0.5 };
+    this.home = { ...home };
     this.reset();
   }
 

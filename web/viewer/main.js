@@ -55,37 +55,17 @@ function tellFacts({ facts }) {
 class Viewer {
   constructor(canvas, gl, model, surface) {
     Object.assign(this, { canvas, gl, model, surface });
-    this.camera = new OrbitCamera(surface.centre, surface.radius, model.up);
+    this.camera = new OrbitCamera(surface.centre, surface.radius, model.up, model.home);
     this.split = 0.5;
     this.comparing = this.confidence = this.turning = false;
     this.fading = true;
     this.ground = model.background;
-    this.beginWhereSomebodyLooked();
     this.takeAddress();
     if (!surface.cells) {
       byId("confidence").hidden = true;
       byId("fading").hidden = true;
     }
     this.connect();
-  }
-
-  /** The first view is the one that photographs support best, of a ring of them at a few heights. */
-  beginWhereSomebodyLooked() {
-    const { camera, surface } = this;
-    if (!surface.cells) return;
-    const usual = { ...camera.home };
-    let best = -1;
-    for (const elevation of [usual.elevation, 0.25, 0.75, 1.0]) {
-      for (let i = 0; i < 16; ++i) {
-        const azimuth = usual.azimuth + i * Math.PI / 8;
-        Object.assign(camera, { azimuth, elevation });
-        const supported = surface.supportedFrom(camera.eye, 600);
-        if (supported <= best + 0.02) continue;  // what comes first is kept where it is about as good
-        best = supported;
-        camera.home = { azimuth, elevation };
-      }
-    }
-    camera.reset();
   }
 
   /** What the address says after #: azimuth, elevation, zoom, bare, fading, compare, confidence. */

@@ -129,10 +129,10 @@ export class Surface {
   }
 
   /** Share of the surface turned to an eye whose direction has been looked from (or nearly), [0, 1];
-   * of about so many of its patches. */
-  supportedFrom(eye, samples = 3000) {
+   * of about 3000 of its patches. */
+  supportedFrom(eye) {
     if (!this.cells) return 1;
-    const stride = Math.max(1, Math.floor(this.patches / samples));
+    const stride = Math.max(1, Math.floor(this.patches / 3000));
     let facing = 0;
     let supported = 0;
     for (let patch = 0; patch < this.patches; patch += stride) {
