@@ -112,10 +112,10 @@ void EigenspaceFitter::pack() {
   }
 
   // Group, on small pictures.
-  ViewSphere sphere(directions_);
+  const ViewGraph graph(directions_);
   const GroupRule rule{options.eigenimages, options.tolerance};
   const Partition partition =
-      partition_views(gram_of(small, pixel_weights(small)), sphere, rule, threads_);
+      partition_views(gram_of(small, pixel_weights(small)), graph, rule, threads_);
 
   // Pack, and each space's neighbours for the transitions.
   const cv::Mat weights = pixel_weights(pictures);
@@ -124,7 +124,7 @@ void EigenspaceFitter::pack() {
   for (const ViewGroup& group : partition.groups) {
     std::vector<std::uint32_t> guards;
     for (const std::uint32_t member : group.members) {
-      for (const std::uint32_t next : sphere.mixed_with(member)) {
+      for (const std::uint32_t next : graph.mixed_with(member)) {
         if (!std::ranges::binary_search(group.members, next)) guards.push_back(next);
       }
     }
@@ -136,8 +136,7 @@ void EigenspaceFitter::pack() {
     spaces.push_back(std::move(packed.space));
     std::ranges::move(packed.views, std::back_inserter(views));
   }
-  model_.set_spaces(frame_, std::move(sphere), partition.owners, std::move(spaces),
-                    std::move(views));
+  model_.set_spaces(frame_, directions_, partition.owners, std::move(spaces), std::move(views));
   packed_ = photographs_.size();
   update_.elements.resize(model_.element_count());
   std::iota(update_.elements.begin(), update_.elements.end(), 0U);

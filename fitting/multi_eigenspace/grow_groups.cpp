@@ -14,10 +14,10 @@ constexpr std::size_t kJoinPart = 16;
 
 /// Neighbours of the members, those that the group draws best first.
 std::vector<std::uint32_t> candidates_for(const ViewGroup& group, const Gram& gram,
-                                          const ViewSphere& sphere) {
+                                          const ViewGraph& graph) {
   std::vector<std::uint32_t> views;
   for (const std::uint32_t member : group.members) {
-    for (const std::uint32_t next : sphere.neighbours(member)) {
+    for (const std::uint32_t next : graph.neighbours(member)) {
       if (!std::ranges::binary_search(group.members, next)) views.push_back(next);
     }
   }
@@ -35,10 +35,10 @@ ViewGroup group_of(std::vector<std::uint32_t> members, const Gram& gram, const G
   return principal_axes(gram, std::move(members), rule.most_eigenimages, rule.allowed());
 }
 
-ViewGroup seed_group(const Gram& gram, const ViewSphere& sphere, const GroupRule& rule,
+ViewGroup seed_group(const Gram& gram, const ViewGraph& graph, const GroupRule& rule,
                      std::uint32_t seed_view) {
   std::vector<std::uint32_t> members{seed_view};
-  for (const std::uint32_t next : sphere.neighbours(seed_view)) {
+  for (const std::uint32_t next : graph.neighbours(seed_view)) {
     if (members.size() < 3) members.push_back(next);
   }
   ViewGroup group = group_of(std::move(members), gram, rule);
@@ -54,12 +54,12 @@ bool GroupRule::is_kept_by(const ViewGroup& group) const {
          group.residuals.maxCoeff() <= worst * allowed() + rounding;
 }
 
-ViewGroup grow_group(const Gram& gram, const ViewSphere& sphere, const GroupRule& rule,
+ViewGroup grow_group(const Gram& gram, const ViewGraph& graph, const GroupRule& rule,
                      std::uint32_t seed_view) {
-  ViewGroup group = seed_group(gram, sphere, rule, seed_view);
+  ViewGroup group = seed_group(gram, graph, rule, seed_view);
   std::size_t joining = 1;
   while (joining > 0) {
-    const auto candidates = candidates_for(group, gram, sphere);
+    const auto candidates = candidates_for(group, gram, graph);
     joining = std::min(candidates.size(), 1 + group.members.size() / kJoinPart);
     for (; joining > 0; joining /= 2) {
       std::vector<std::uint32_t> members = group.members;
@@ -74,14 +74,14 @@ ViewGroup grow_group(const Gram& gram, const ViewSphere& sphere, const GroupRule
   return group;
 }
 
-std::vector<ViewGroup> grow_groups(const Gram& gram, const ViewSphere& sphere,
-                                   const GroupRule& rule, int threads) {
+std::vector<ViewGroup> grow_groups(const Gram& gram, const ViewGraph& graph, const GroupRule& rule,
+                                   int threads) {
   std::vector<ViewGroup> groups((static_cast<std::size_t>(gram.rows()) + 1) / 2);
   core::parallel_for(
       groups.size(), threads,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-          groups[i] = grow_group(gram, sphere, rule, static_cast<std::uint32_t>(2 * i));
+          groups[i] = grow_group(gram, graph, rule, static_cast<std::uint32_t>(2 * i));
         }
       },
       1);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "fitting/multi_eigenspace/view_graph.h"
 #include "fitting/multi_eigenspace/view_group.h"
-#include "fitting/multi_eigenspace/view_sphere.h"
 
 #include <vector>
 
@@ -20,11 +20,11 @@ struct GroupRule {
 
 /// A group grown from a view and its two nearest neighbours: of all neighbours of its members the
 /// view joins that the group draws best, as long as the rule is kept.
-ViewGroup grow_group(const Gram& gram, const ViewSphere& sphere, const GroupRule& rule,
+ViewGroup grow_group(const Gram& gram, const ViewGraph& graph, const GroupRule& rule,
                      std::uint32_t seed_view);
 
 /// One from every second view. The same on any number of threads.
-std::vector<ViewGroup> grow_groups(const Gram& gram, const ViewSphere& sphere,
-                                   const GroupRule& rule, int threads);
+std::vector<ViewGroup> grow_groups(const Gram& gram, const ViewGraph& graph, const GroupRule& rule,
+                                   int threads);
 
 }  // namespace sheen::fitting::multi_eigenspace

@@ -43,7 +43,7 @@ Arrays arrays_of(const MultiEigenspace& model) {
   Arrays arrays;
   const auto& [centre, radius_m, up] = model.frame();
   arrays.frame = {centre.x(), centre.y(), centre.z(), radius_m, up.x(), up.y(), up.z()};
-  for (const auto& one : model.sphere().directions()) {
+  for (const auto& one : model.directions()) {
     arrays.directions.push_back({one.x(), one.y(), one.z()});
   }
   for (const Eigenspace& space : model.spaces()) {
@@ -101,13 +101,13 @@ PictureFrame frame_from(const Frame& numbers) {
   return frame;
 }
 
-ViewSphere sphere_from(const std::vector<Vector>& numbers) {
+std::vector<Eigen::Vector3d> directions_from(const std::vector<Vector>& numbers) {
   std::vector<Eigen::Vector3d> directions;
   for (const Vector& one : numbers) {
     directions.emplace_back(one[0], one[1], one[2]);
     if (!is_unit(directions.back())) throw ModelFault("the direction of a view is none");
   }
-  return ViewSphere(std::move(directions));
+  return directions;
 }
 
 /// Hands out pictures from an array.
@@ -230,14 +230,14 @@ std::unique_ptr<const LightField> decode_model(const ModelPart& part, const core
   if (views == 0) return model;
 
   const PictureFrame frame = frame_from(required_records<Frame>(part, "frame", 1).front());
-  ViewSphere sphere = sphere_from(required_records<Vector>(part, "directions", views));
+  auto directions = directions_from(required_records<Vector>(part, "directions", views));
   auto owners = required_records<std::uint32_t>(part, "owners", views);
   if (std::ranges::any_of(owners, [&](std::uint32_t owner) { return owner >= count; })) {
     throw ModelFault("a view is in an eigenspace that there is not");
   }
   auto spaces = spaces_from(part, count, options.picture_px);
   auto entries = views_from(part, spaces, owners);
-  model->set_spaces(frame, std::move(sphere), std::move(owners), std::move(spaces),
+  model->set_spaces(frame, std::move(directions), std::move(owners), std::move(spaces),
                     std::move(entries));
   return model;
 }

@@ -33,11 +33,12 @@ std::size_t MultiEigenspace::coefficient_count() const {
   return count;
 }
 
-void MultiEigenspace::set_spaces(const PictureFrame& frame, ViewSphere sphere,
+void MultiEigenspace::set_spaces(const PictureFrame& frame, std::vector<Eigen::Vector3d> directions,
                                  std::vector<std::uint32_t> owners, std::vector<Eigenspace> spaces,
                                  std::vector<ViewInSpace> views) {
   frame_ = frame;
-  sphere_ = std::move(sphere);
+  sphere_ = core::ViewSphere(directions);
+  directions_ = std::move(directions);
   owners_ = std::move(owners);
   spaces_ = std::move(spaces);
   views_ = std::move(views);
@@ -57,9 +58,13 @@ const ViewInSpace* MultiEigenspace::find(std::uint32_t view_idx, std::uint32_t s
 }
 
 std::vector<SpaceShare> MultiEigenspace::shares(const Eigen::Vector3d& direction) const {
-  const std::vector<ViewShare> corners = sphere_.shares(direction);
+  if (directions_.empty()) return {};
+  const core::SphereBlend corners = sphere_.blend(direction);
   std::vector<SpaceShare> spaces;
-  for (const auto& [view, share] : corners) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::uint32_t view = corners.index[c];
+    const float share = corners.weight[c];
+    if (!(share > 0)) continue;
     const auto same = std::ranges::find(spaces, owners_[view], &SpaceShare::space_idx);
     if (same != spaces.end()) {
       same->share += share;
@@ -75,8 +80,9 @@ std::vector<SpaceShare> MultiEigenspace::shares(const Eigen::Vector3d& direction
   for (SpaceShare& space : spaces) {
     space.coefficients.assign(spaces_[space.space_idx].images.size(), 0.0f);
     float known = 0;
-    for (const auto& [view, share] : corners) {
-      const ViewInSpace* const own = find(view, space.space_idx);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float share = corners.weight[c];
+      const ViewInSpace* const own = share > 0 ? find(corners.index[c], space.space_idx) : nullptr;
       if (own == nullptr) continue;
       known += share;
       for (std::size_t k = 0; k < space.coefficients.size(); ++k) {
@@ -88,7 +94,6 @@ std::vector<SpaceShare> MultiEigenspace::shares(const Eigen::Vector3d& direction
       coefficient = known > 0 ? coefficient / (known * largest) : 0.0f;
     }
   }
-  std::erase_if(spaces, [](const SpaceShare& space) { return !(space.share > 0); });
   return spaces;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "core/directions/view_sphere.h"
 #include "fitting/light_field.h"
 #include "fitting/mean/mean_light_field.h"
 #include "fitting/multi_eigenspace/options.h"
 #include "fitting/multi_eigenspace/picture_frame.h"
-#include "fitting/multi_eigenspace/view_sphere.h"
 
 #include <Eigen/Core>
 #include <opencv2/core/mat.hpp>
@@ -40,7 +40,8 @@ struct SpaceShare {
 
 /// Views of the object as a whole, rectified to pictures and packed into several eigenspaces of few
 /// dimensions each (docs/systems.md); after Leonardis, Bischof and Maver, "Multiple eigenspaces"
-/// (2002), from headings to all directions. The mean colours of the vertices are for programs that know nothing of it.
+/// (2002), from headings to all directions. The mean colours of the vertices are for programs that
+/// know nothing of it.
 class MultiEigenspace final : public LightField {
  public:
   /// Without any view.
@@ -57,16 +58,18 @@ class MultiEigenspace final : public LightField {
 
   [[nodiscard]] const Options& options() const { return options_; }
   [[nodiscard]] const PictureFrame& frame() const { return frame_; }
-  [[nodiscard]] const ViewSphere& sphere() const { return sphere_; }
+  /// From the middle of the frame to the eye of every view, unit vectors.
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& directions() const { return directions_; }
   [[nodiscard]] const std::vector<std::uint32_t>& owners() const { return owners_; }
   [[nodiscard]] const std::vector<Eigenspace>& spaces() const { return spaces_; }
   [[nodiscard]] const std::vector<ViewInSpace>& views() const { return views_; }
   [[nodiscard]] const mean::MeanLightField& means() const { return means_; }
 
   void set_means(const mean::MeanLightField& means) { means_ = means; }
-  /// One owner for every direction of the sphere; every view in its own space at least.
-  void set_spaces(const PictureFrame& frame, ViewSphere sphere, std::vector<std::uint32_t> owners,
-                  std::vector<Eigenspace> spaces, std::vector<ViewInSpace> views);
+  /// One owner for every direction; every view in its own space at least.
+  void set_spaces(const PictureFrame& frame, std::vector<Eigen::Vector3d> directions,
+                  std::vector<std::uint32_t> owners, std::vector<Eigenspace> spaces,
+                  std::vector<ViewInSpace> views);
 
   /// What is drawn towards a direction (unit, from the middle of the frame): one space or, between
   /// views of different ones and unless switching is hard, up to three. Shares sum to 1; nothing
@@ -81,7 +84,8 @@ class MultiEigenspace final : public LightField {
 
   Options options_;
   PictureFrame frame_{Eigen::Vector3d::Zero(), 1, Eigen::Vector3d::UnitZ()};
-  ViewSphere sphere_{{}};
+  std::vector<Eigen::Vector3d> directions_;
+  core::ViewSphere sphere_{{}};
   std::vector<std::uint32_t> owners_;
   std::vector<Eigenspace> spaces_;
   std::vector<ViewInSpace> views_;          ///< by view, then by space

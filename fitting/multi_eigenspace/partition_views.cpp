@@ -20,8 +20,8 @@ constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
 class Sharing {
  public:
-  Sharing(const Gram& gram, const ViewSphere& sphere, const GroupRule& rule)
-      : gram_(gram), sphere_(sphere), rule_(rule) {}
+  Sharing(const Gram& gram, const ViewGraph& graph, const GroupRule& rule)
+      : gram_(gram), graph_(graph), rule_(rule) {}
 
   /// The members to their groups, and group by group what lies next to them.
   void share_out(std::vector<ViewGroup> groups);
@@ -48,7 +48,7 @@ class Sharing {
   void fit_groups();
 
   const Gram& gram_;
-  const ViewSphere& sphere_;
+  const ViewGraph& graph_;
   const GroupRule& rule_;
   std::vector<ViewGroup> groups_;
   std::vector<std::uint32_t> owners_;
@@ -97,7 +97,7 @@ bool Sharing::join_best() {
       best_group = g;
       is_next_to_it = is_next;
     };
-    for (const std::uint32_t next : sphere_.neighbours(view)) consider(owners_[next], true);
+    for (const std::uint32_t next : graph_.neighbours(view)) consider(owners_[next], true);
     for (std::uint32_t g = 0; g < groups_.size(); ++g) consider(g, false);
   }
   if (best_view < count()) owners_[best_view] = best_group;
@@ -121,7 +121,7 @@ void Sharing::fit_groups() {
 }
 
 double Sharing::border_cost(std::size_t view, std::uint32_t group_idx) const {
-  const auto& neighbours = sphere_.neighbours(view);
+  const auto& neighbours = graph_.neighbours(view);
   if (neighbours.empty()) return 0;
   const auto others = std::ranges::count_if(
       neighbours, [&](std::uint32_t next) { return owners_[next] != group_idx; });
@@ -137,7 +137,7 @@ void Sharing::refine() {
         return error(view, group_idx) + border_cost(view, group_idx);
       };
       std::uint32_t best = owners_[view];
-      for (const std::uint32_t next : sphere_.neighbours(view)) {
+      for (const std::uint32_t next : graph_.neighbours(view)) {
         if (cost_in(owners_[next]) < cost_in(best)) best = owners_[next];
       }
       changed = changed || best != owners_[view];
@@ -162,7 +162,7 @@ void Sharing::add_missing() {
     if (view == count()) return;
     tried[view] = 1;
     // Of its group's views those go over that it draws better, the view itself at least.
-    const ViewGroup more = grow_group(gram_, sphere_, rule_, static_cast<std::uint32_t>(view));
+    const ViewGroup more = grow_group(gram_, graph_, rule_, static_cast<std::uint32_t>(view));
     const auto added = static_cast<std::uint32_t>(groups_.size());
     for (const std::uint32_t member : more.members) {
       if (member == view || more.residual(gram_, member) < error(member, owners_[member])) {
@@ -214,9 +214,9 @@ void Sharing::drop_needless() {
 
 }  // namespace
 
-Partition partition_views(const Gram& gram, const ViewSphere& sphere, const GroupRule& rule,
+Partition partition_views(const Gram& gram, const ViewGraph& graph, const GroupRule& rule,
                           int threads) {
-  std::vector<ViewGroup> grown = grow_groups(gram, sphere, rule, threads);
+  std::vector<ViewGroup> grown = grow_groups(gram, graph, rule, threads);
   const std::size_t count = grown.size();
   auto chosen = maximise_boolean(description_gains(grown));
   if (chosen.empty()) {
@@ -229,7 +229,7 @@ Partition partition_views(const Gram& gram, const ViewSphere& sphere, const Grou
   groups.reserve(chosen.size());
   for (const std::size_t i : chosen) groups.push_back(std::move(grown[i]));
 
-  Sharing sharing(gram, sphere, rule);
+  Sharing sharing(gram, graph, rule);
   sharing.share_out(std::move(groups));
   sharing.refine();
   sharing.add_missing();

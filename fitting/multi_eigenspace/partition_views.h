@@ -20,7 +20,7 @@ struct Partition {
 /// among them; where one would be drawn with more than twice the tolerance, a group more, and
 /// where the others can take a group's views within the tolerance, one less. There is at least one
 /// view.
-Partition partition_views(const Gram& gram, const ViewSphere& sphere, const GroupRule& rule,
+Partition partition_views(const Gram& gram, const ViewGraph& graph, const GroupRule& rule,
                           int threads);
 
 }  // namespace sheen::fitting::multi_eigenspace

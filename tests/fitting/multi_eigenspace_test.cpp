@@ -7,6 +7,7 @@
 #include "fitting/multi_eigenspace/partition_views.h"
 #include "fitting/multi_eigenspace/rectified_picture.h"
 #include "fitting/multi_eigenspace/select_groups.h"
+#include "fitting/multi_eigenspace/view_graph.h"
 #include "render/multi_eigenspace/eigenspace_renderer.h"
 #include "tests/fitting/photographs_for_tests.h"
 
@@ -27,7 +28,7 @@ using render::testing::looking_at_origin;
 using testing::Photographs;
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr int kViews = 72;
+constexpr std::uint32_t kViews = 72;
 constexpr double kElevation = 20 * kDegree;
 
 /// Figures of docs/systems.md: `multi_eigenspace_test --gtest_output=json:laws.json` writes them.
@@ -57,7 +58,7 @@ const Photographs& turntable() {
     }
     render::testing::compute_normals(mesh);
     std::vector<Eigen::Isometry3d> poses;
-    for (int i = 0; i < kViews; ++i) {
+    for (std::uint32_t i = 0; i < kViews; ++i) {
       poses.push_back(looking_at_origin(heading(360.0 * i / kViews), 0.36));
     }
     return Photographs(std::move(mesh), poses, printed);
@@ -181,68 +182,34 @@ TEST(SelectGroups, IsNearlyTheBestOfAllSets) {
   EXPECT_LT(lost / problems, 0.01);
 }
 
-// ---- the sphere of views ----
+// ---- which views are neighbours ----
 
-TEST(ViewSphere, SharesAreLinearAlongATurntable) {
-  std::vector<Eigen::Vector3d> directions;
-  for (int i = 0; i < kViews; ++i) directions.push_back(heading(5.0 * i));
-  const ViewSphere sphere(directions);
-  for (int i = 0; i < kViews; ++i) {
-    for (const double part : {0.0, 0.3, 0.9}) {
-      std::vector<double> shares(kViews, 0);
-      for (const auto& [view, share] : sphere.shares(heading(5 * (i + part)))) {
-        shares[view] += static_cast<double>(share);
-      }
-      // Of a chord instead of its arc: 5 degrees differ by less than a thousandth.
-      EXPECT_NEAR(shares[static_cast<std::size_t>(i)], 1 - part, 1e-3);
-      EXPECT_NEAR(shares[static_cast<std::size_t>((i + 1) % kViews)], part, 1e-3);
+// Along a turntable the two next ones, whatever triangles lie over the ring.
+TEST(ViewGraph, ATurntableIsARing) {
+  for (const double elevation : {20.0, 50.0}) {
+    std::vector<Eigen::Vector3d> directions;
+    for (std::uint32_t i = 0; i < kViews; ++i) {
+      directions.push_back(Eigen::AngleAxisd(elevation * kDegree - kElevation,
+                                             Eigen::Vector3d(std::sin(5 * i * kDegree),
+                                                             -std::cos(5 * i * kDegree), 0)) *
+                           heading(5.0 * i));
+    }
+    const ViewGraph graph(directions);
+    for (std::uint32_t i = 0; i < kViews; ++i) {
+      auto next = graph.neighbours(i);
+      std::ranges::sort(next);
+      auto expected = std::vector{(i + 1) % kViews, (i + kViews - 1) % kViews};
+      std::ranges::sort(expected);
+      EXPECT_EQ(next, expected) << elevation << " " << i;
     }
   }
 }
 
-// Barycentric: the shares' mean of the corners points where it was asked for, and a small step
-// changes them little.
-TEST(ViewSphere, SharesAreBarycentricAndContinuous) {
-  std::mt19937 random(5);
-  std::normal_distribution<double> normal;
-  std::vector<Eigen::Vector3d> directions;
-  for (int i = 0; i < 200; ++i) {
-    directions.push_back(
-        Eigen::Vector3d(normal(random), normal(random), normal(random)).normalized());
-  }
-  const ViewSphere sphere(directions);
-  std::vector<double> previous(directions.size(), 0);
-  constexpr int steps = 3000;
-  for (int i = 0; i < steps; ++i) {
-    const double angle = 2 * std::numbers::pi * i / steps;
-    const Eigen::Vector3d towards =
-        Eigen::AngleAxisd(angle, Eigen::Vector3d(1, 2, 2) / 3) * Eigen::Vector3d(2, 1, -2) / 3;
-    std::vector<double> shares(directions.size(), 0);
-    Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-    for (const auto& [view, share] : sphere.shares(towards)) {
-      shares[view] = static_cast<double>(share);
-      mean += static_cast<double>(share) * directions[view];
-    }
-    EXPECT_LT((mean.normalized() - towards).norm(), 1e-6);
-    double change = 0;
-    for (std::size_t k = 0; k < shares.size(); ++k) change += std::abs(shares[k] - previous[k]);
-    // A step is 0.12 degrees, an edge rarely shorter than 2.
-    EXPECT_TRUE(i == 0 || change < 0.5) << i << ": " << change;
-    previous = shares;
-  }
-}
-
-TEST(ViewSphere, FewAndEqualDirectionsHaveShares) {
-  EXPECT_TRUE(ViewSphere({}).shares({0, 0, 1}).empty());
-  EXPECT_EQ(ViewSphere({{0, 0, 1}}).shares({1, 0, 0}).size(), 1u);
-  float sum = 0;
-  for (const ViewShare& one : ViewSphere({{0, 0, 1}, {0, 0, 1}}).shares({1, 0, 0}))
-    sum += one.share;
-  EXPECT_EQ(sum, 1.0f);
-  const auto between =
-      ViewSphere({{0, 0, 1}, {1, 0, 0}}).shares({std::sqrt(0.5), 0, std::sqrt(0.5)});
-  ASSERT_EQ(between.size(), 2u);
-  EXPECT_NEAR(between[0].share, 0.5f, 1e-6f);
+TEST(ViewGraph, FewAndEqualDirectionsAreJoined) {
+  EXPECT_TRUE(ViewGraph(std::vector<Eigen::Vector3d>{{0, 0, 1}}).neighbours(0).empty());
+  const std::vector<Eigen::Vector3d> equal(3, {0, 0, 1});
+  const ViewGraph graph(equal);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_FALSE(graph.neighbours(i).empty());
 }
 
 // ---- pictures ----
@@ -382,7 +349,7 @@ TEST(MultiEigenspace, EightBitsCostLessThanAGreyLevel) {
         pictures[members[i]].convertTo(picture, CV_64FC4);
         exact += picture * parts[static_cast<Eigen::Index>(i)];
       }
-      const cv::Mat stored = model.picture(model.sphere().directions()[view]);
+      const cv::Mat stored = model.picture(model.directions()[view]);
       largest = std::max(largest, std::sqrt(squared_difference(stored, exact)));
     }
   }
