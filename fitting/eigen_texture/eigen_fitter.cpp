@@ -60,9 +60,10 @@ class EigenFitter final : public Fitter {
     model_.set_vertex_means(vertex_means_.means());
     std::vector<SeenTexel> seen = reader_.read(observation);
     for (const SeenTexel& texel : seen) {
-      means_[texel.slot].add({1.0f, static_cast<float>(texel.rgb[0]),
-                              static_cast<float>(texel.rgb[1]), static_cast<float>(texel.rgb[2])},
-                             texel.squared_cosine());
+      means_[texel.slot].add(
+          detail::Four{1.0f, static_cast<float>(texel.rgb[0]), static_cast<float>(texel.rgb[1]),
+                       static_cast<float>(texel.rgb[2])},
+          texel.squared_cosine());
       store_mean(texel.slot);
     }
     directions_.push_back(model_.direction_to(core::eye_in_object(observation.camera_from_object)));
