@@ -138,7 +138,7 @@ TEST(DefaultSheet, IsToldFromOthersByItsIds) {
     std::vector<TagDetection> tags;
     for (const auto& [id, tag] : board.tags) {
       EXPECT_GE(id, sheet.first_id);
-      tags.push_back({id, {}, 1});
+      tags.emplace_back().id = id;
     }
     const auto recognised = recognise_default_sheet(tags);
     ASSERT_TRUE(recognised);
