@@ -59,37 +59,35 @@ nlohmann::ordered_json to_json(const WalkCalibration& found) {
           {"views", found.views}};
 }
 
-/// Takes over a file that the session lacks.
-void take(const std::filesystem::path& file, const std::filesystem::path& folder,
-          const char* option, std::optional<std::filesystem::path>& place, const char* name) {
+/// Lets the session read a file that is given. Throws core::Error (bad_input) where it has one.
+void take(const std::filesystem::path& file, const char* option,
+          std::optional<std::filesystem::path>& place) {
   if (file.empty()) return;
   if (place) {
     throw core::bad_input(*place, fmt::format("is the session's already, {} is not needed", option),
                           "leave the option away, or replace that file");
   }
+  place = file;
+}
+
+/// What is about to be written must not replace somebody's file.
+void require_room(const std::filesystem::path& file) {
   std::error_code no_throw;
-  if (std::filesystem::exists(folder / name, no_throw)) {
-    throw core::bad_input(folder / name, "is there, though session.json does not name it",
-                          "name it there or take it away");
-  }
-  capture::copy_into_session(file, folder / name);
-  place = folder / name;
+  if (!std::filesystem::exists(file, no_throw)) return;
+  throw core::bad_input(file, "is there, though session.json does not name it",
+                        "name it there or take it away");
 }
 
 std::optional<std::string> name_if(bool is_new, const char* name) {
   return is_new ? std::optional<std::string>(name) : std::nullopt;
 }
 
-void find_what_lacks(const capture::Session& session, const pipeline::FrameChoice& choice,
-                     pipeline::ProgressSink& sink, WalkAnswer& answer) {
-  const pipeline::WalkFindings found = pipeline::read_walk(session, choice, sink);
+void tell(const pipeline::WalkFindings& found, WalkAnswer& answer) {
   if (found.sheet) {
-    capture::write_board(session.folder / "board.yaml", found.board);
     answer.document["sheet"] = found.sheet->paper;
     answer.text += fmt::format("board    the sheet of sheen board, {} paper\n", found.sheet->paper);
   }
   if (found.calibration) {
-    capture::write_camera(session.folder / "camera.yaml", found.calibration->camera);
     answer.document["camera"] = to_json(*found.calibration);
     answer.text += describe(*found.calibration);
   }
@@ -115,18 +113,29 @@ capture::Session open_walk(const std::filesystem::path& folder, const WalkOption
   capture::Session session = capture::open_unfinished_session(folder);
   const bool lacks_camera = !session.camera_file;
   const bool lacks_board = !session.board && (!session.poses || lacks_camera);
-  if (!options.camera.empty()) static_cast<void>(capture::read_camera(options.camera));
-  if (!options.board.empty()) static_cast<void>(capture::read_board(options.board));
-  std::optional<SessionLock> lock;
-  if (lacks_camera || lacks_board)
-    lock.emplace(folder, std::initializer_list<std::filesystem::path>{folder / "session.json"});
-  take(options.camera, folder, "--camera", session.camera_file, "camera.yaml");
-  take(options.board, folder, "--board", session.board, "board.yaml");
+  take(options.camera, "--camera", session.camera_file);
+  take(options.board, "--board", session.board);
   if (!lacks_camera && !lacks_board) return session;
+  const std::filesystem::path camera_file = folder / "camera.yaml";
+  const std::filesystem::path board_file = folder / "board.yaml";
+  const SessionLock lock(folder, {folder / "session.json"});
+  if (lacks_camera) require_room(camera_file);
+  if (lacks_board) require_room(board_file);
 
-  // Find the rest, then name it all at once.
+  // Find the rest, then write all of it and name it: a walk that does not tell changes nothing.
+  const core::CameraModel given_camera =
+      options.camera.empty() ? session.camera : capture::read_camera(options.camera);
+  std::optional<pipeline::WalkFindings> found;
   if (!session.camera_file || (lacks_board && !session.board)) {
-    find_what_lacks(session, choice, sink, answer);
+    found = pipeline::read_walk(session, choice, sink);
+    tell(*found, answer);
+  }
+  if (lacks_board) {
+    capture::write_board(board_file, found ? found->board : capture::read_board(*session.board));
+  }
+  if (lacks_camera) {
+    capture::write_camera(camera_file,
+                          found && found->calibration ? found->calibration->camera : given_camera);
   }
   capture::write_camera_and_board(folder / "session.json", name_if(lacks_camera, "camera.yaml"),
                                   name_if(lacks_board, "board.yaml"));

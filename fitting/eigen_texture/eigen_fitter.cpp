@@ -60,9 +60,10 @@ class EigenFitter final : public Fitter {
     model_.set_vertex_means(vertex_means_.means());
     std::vector<SeenTexel> seen = reader_.read(observation);
     for (const SeenTexel& texel : seen) {
-      means_[texel.slot].add({1.0f, static_cast<float>(texel.rgb[0]),
-                              static_cast<float>(texel.rgb[1]), static_cast<float>(texel.rgb[2])},
-                             texel.squared_cosine());
+      means_[texel.slot].add(
+          detail::Four{1.0f, static_cast<float>(texel.rgb[0]), static_cast<float>(texel.rgb[1]),
+                       static_cast<float>(texel.rgb[2])},
+          texel.squared_cosine());
       store_mean(texel.slot);
     }
     directions_.push_back(model_.direction_to(core::eye_in_object(observation.camera_from_object)));
@@ -76,10 +77,13 @@ class EigenFitter final : public Fitter {
     vertex_means_.finish();
     model_.set_vertex_means(vertex_means_.means());
     fill_unseen();
-    std::vector<Texel> mean;
-    for (const std::uint32_t texel : reader_.used()) mean.push_back(model_.mean().texels()[texel]);
-    model_.set_bases(fit_bases(views_, mean, static_cast<std::size_t>(options_.bases), threads_),
-                     directions_);
+    if (incremental_) {
+      grow();
+    } else {
+      model_.set_bases(
+          fit_bases(views_, used_means(), static_cast<std::size_t>(options_.bases), threads_),
+          directions_);
+    }
     update_.elements = {0};
     return update_;
   }

@@ -3,6 +3,8 @@
 #include "capture/calibration/camera_file.h"
 #include "tests/app/copied_session.h"
 
+#include <algorithm>
+
 namespace sheen::tests {
 namespace {
 

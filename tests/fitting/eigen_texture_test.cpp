@@ -199,9 +199,9 @@ std::vector<int> views_from(int begin, int end) {
 }
 
 std::unique_ptr<Fitter> fitted(const Photographs& photographs, const std::vector<int>& views,
-                               const std::string& bases) {
-  auto fitter =
-      make_fitter("eigen-texture", photographs.mesh(), {{"bases", bases}, {"texture-side", "128"}});
+                               const std::string& bases, const std::string& solve = "batch") {
+  auto fitter = make_fitter("eigen-texture", photographs.mesh(),
+                            {{"bases", bases}, {"texture-side", "128"}, {"eigen-solve", solve}});
   photographs.show(views, *fitter);
   fitter->finish();
   return fitter;
