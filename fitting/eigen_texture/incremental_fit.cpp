@@ -17,8 +17,6 @@ using Eigen::VectorXf;
 
 /// What bases leave unexplained, squared grey levels: views are explained as if it were noise.
 constexpr float kUnexplained = 9.0f;
-/// Squared cosines count fully from here on.
-constexpr float kFullWeight = 0.25f;
 
 /// Coefficients of a view from a part of its texels.
 VectorXf coefficients_of(const std::vector<SeenTexel>& view, std::span<const Texel> mean,
@@ -83,8 +81,7 @@ void IncrementalFit::add_to(std::size_t channel, std::span<const std::vector<See
     for (const SeenTexel& seen : view) {
       const float rest = deviation(seen.rgb, mean[seen.slot])[channel] -
                          factors.basis.row(seen.slot).dot(explained);
-      grown.basis(seen.slot, rank + 1 + v) =
-          std::min(1.0f, seen.squared_cosine() / kFullWeight) * rest;
+      grown.basis(seen.slot, rank + 1 + v) = rest;
     }
     grown.coefficients.row(before + v).head(rank) = explained.transpose();
     grown.coefficients(before + v, rank + 1 + v) = 1.0f;
