@@ -43,14 +43,15 @@ void ViewGraph::join(std::uint32_t a, std::uint32_t b) {
   mixed_with_[b].push_back(a);
 }
 
-/// Within the circle that has the edge as its diameter. If there is one, then also among those that
-/// share an edge with an end.
+/// Within the circle that has the edge as its diameter, or on it but in neither end's place. If
+/// there is one, then also among those that share an edge with an end.
 bool ViewGraph::has_view_between(std::uint32_t a, std::uint32_t b) const {
   const Eigen::Vector3d middle = directions_[a] + directions_[b];
   const auto is_between = [&](std::uint32_t view) {
     constexpr double rounding = 1e-9;
-    return view != a && view != b &&
-           directions_[view].dot(middle) > directions_[a].dot(middle) + rounding;
+    const Eigen::Vector3d& one = directions_[view];
+    return one.dot(middle) > directions_[a].dot(middle) - rounding &&
+           std::max(one.dot(directions_[a]), one.dot(directions_[b])) < 1 - rounding;
   };
   return std::ranges::any_of(mixed_with_[a], is_between) ||
          std::ranges::any_of(mixed_with_[b], is_between);

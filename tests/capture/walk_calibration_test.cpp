@@ -147,7 +147,9 @@ TEST(DefaultSheet, IsToldFromOthersByItsIds) {
   // Both together have all ids, so no id is on two sheets.
   EXPECT_EQ(all_default_tags().tags.size(), default_board(kDefaultSheets[0]).tags.size() +
                                                 default_board(kDefaultSheets[1]).tags.size());
-  EXPECT_FALSE(recognise_default_sheet({{0, {}, 1}, {19, {}, 1}}));
+  std::vector<TagDetection> others(2);
+  others[1].id = 19;
+  EXPECT_FALSE(recognise_default_sheet(others));
 }
 
 TEST(DefaultSheet, IsWhatABoardWithoutOptionsIs) {

@@ -3,6 +3,7 @@
 #include "fitting/multi_eigenspace/multi_eigenspace.h"
 
 #include "fitting/descriptor.h"
+#include "fitting/model_file/model_part.h"
 #include "fitting/multi_eigenspace/pack_pictures.h"
 #include "fitting/multi_eigenspace/partition_views.h"
 #include "fitting/multi_eigenspace/rectified_picture.h"
@@ -398,6 +399,29 @@ TEST(MultiEigenspace, WithoutToleranceViewsAreTheirOwn) {
   cv::Mat inside;
   cv::erode(view.mask, inside, {}, {-1, -1}, 2);
   EXPECT_LT(render::testing::difference(view.image, image, inside).mean, 2.5);
+}
+
+// Arrays of nothing but ones: indices beyond everything and NaN are refused; in pictures and
+// coefficients every byte is a number.
+TEST(MultiEigenspace, AlteredArraysAreRefused) {
+  const Photographs& photographs = turntable();
+  const Descriptor& descriptor = representation_named("multi-eigenspace");
+  const ModelPart good = descriptor.encode(fitted_turntable());
+  const auto is_free = [](const std::string& name) {
+    return name == "means" || name == "images" || name == "viewCoefficients";
+  };
+  for (const auto& [name, array] : good.arrays) {
+    const std::vector<std::byte> ones(array.size(), std::byte{0xff});
+    ModelPart part = good;
+    part.arrays[name] = ones;
+    if (!is_free(name)) {
+      EXPECT_THROW(descriptor.decode(part, photographs.mesh()), ModelFault) << name;
+      continue;
+    }
+    const auto model = descriptor.decode(part, photographs.mesh());
+    const cv::Mat picture = dynamic_cast<const MultiEigenspace&>(*model).picture(heading(7));
+    EXPECT_TRUE(cv::checkRange(picture)) << name;
+  }
 }
 
 TEST(MultiEigenspace, EqualViewsAreOneSpace) {
