@@ -2,6 +2,7 @@
 #include "pipeline/check_seen.h"
 
 #include "capture/pose/board_diagnosis.h"
+#include "capture/pose/pose_convention.h"
 #include "capture/pose/stamp_check.h"
 #include "core/diagnostics/error.h"
 #include "pipeline/session_parts.h"
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 namespace sheen::pipeline {
 namespace {
@@ -38,13 +40,29 @@ capture::PoseRejection most_frequent(const FrameStatistics& frames) {
   });
 }
 
+capture::FrameSpan span_of(const FrameStatistics& frames) {
+  return {.count = frames.frames_read,
+          .first_index = frames.first_index,
+          .last_index = frames.last_index,
+          .first_s = frames.first_s,
+          .last_s = frames.last_s};
+}
+
+/// Poses from a file that most frames do not find there, because its stamps count frames.
+void refuse_counting_stamps(const capture::Session& session, const FrameStatistics& frames) {
+  if (2 * static_cast<int>(frames.posed.size()) > frames.frames_read) return;
+  const auto fault =
+      capture::counting_stamps(capture::read_trajectory(*session.poses), span_of(frames));
+  if (!fault) return;
+  throw core::bad_input(*session.poses,
+                        fmt::format("gives {} of {} frames a pose: {}", frames.posed.size(),
+                                    frames.frames_read, fault->fault),
+                        fault->remedy);
+}
+
 [[noreturn]] void refuse_by_stamps(const capture::Session& session, const FrameStatistics& frames) {
-  const auto stamps = capture::unmatched_stamps(capture::read_trajectory(*session.poses),
-                                                {.count = frames.frames_read,
-                                                 .first_index = frames.first_index,
-                                                 .last_index = frames.last_index,
-                                                 .first_s = frames.first_s,
-                                                 .last_s = frames.last_s});
+  const auto stamps =
+      capture::unmatched_stamps(capture::read_trajectory(*session.poses), span_of(frames));
   throw core::bad_input(
       *session.poses,
       fmt::format("gives none of {} frames a pose: {}", frames.frames_read, stamps.fault),
@@ -70,6 +88,17 @@ capture::PoseRejection most_frequent(const FrameStatistics& frames) {
                         fmt::format("{}; none of {} frames got a pose ({})", cause.fault,
                                     frames.frames_read, reasons_text(frames)),
                         cause.remedy);
+}
+
+/// Whether the poses of a file are of another convention: the file is at fault then, not the mesh.
+void refuse_other_convention(const capture::Session& session, const FrameStatistics& frames,
+                             const SessionScene& scene) {
+  std::vector<Eigen::Isometry3d> poses;
+  for (const PosedFrame& posed : frames.posed) poses.push_back(posed.camera_from_board);
+  const auto convention = capture::other_convention(poses, session.camera, scene.object_in_board());
+  if (!convention) return;
+  throw core::bad_input(*session.poses, "shows the object in no frame; " + convention->fault,
+                        convention->remedy);
 }
 
 /// Why the vertices of the mesh gave no sample, by the reason that most of them have.
@@ -115,6 +144,9 @@ void check_something_was_seen(const capture::Session& session, const FrameChoice
                               const FrameStatistics& frames, bool patches_were_seen,
                               const SessionScene& scene) {
   check_something_was_posed(session, choice, frames);
+  const bool has_file = takes_poses_from_file(session, choice.pose_source) && session.poses;
+  if (has_file) refuse_counting_stamps(session, frames);
+  if (has_file && !patches_were_seen) refuse_other_convention(session, frames, scene);
   if (!patches_were_seen && frames.frames_fitted + frames.frames_refused > 0) {
     throw unseen(session, frames, scene);
   }

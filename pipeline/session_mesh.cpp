@@ -116,7 +116,8 @@ std::vector<Eigen::Isometry3d> probe_poses(const capture::Session& session,
 }
 
 SessionScene::SessionScene(const capture::Session& session, const core::Mesh& mesh,
-                           PoseSource source, ProgressSink& sink) {
+                           PoseSource source, ProgressSink& sink)
+    : object_in_board_(session.board_from_object * core::bounds_of(mesh).center().cast<double>()) {
   if (!takes_poses_from_file(session, source) && session.board) {
     board_ = capture::read_board(*session.board);
   }

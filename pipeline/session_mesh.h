@@ -59,11 +59,15 @@ class SessionScene {
 
   [[nodiscard]] std::string description() const { return check_->description(); }
 
+  /// Middle of the object in the board's frame.
+  [[nodiscard]] const Eigen::Vector3d& object_in_board() const { return object_in_board_; }
+
   /// All of it for views that are there.
   static void check(const capture::Session& session, const core::Mesh& mesh, PoseSource source,
                     const std::vector<PosedFrame>& views, ProgressSink& sink);
 
  private:
+  Eigen::Vector3d object_in_board_;
   std::optional<capture::Board> board_;
   std::unique_ptr<capture::SceneCheck> check_;
 };

@@ -69,6 +69,25 @@ StampFault unmatched_stamps(const Trajectory& trajectory, const FrameSpan& frame
           "check \"fps\" in session.json against the clock of the poses"};
 }
 
+std::optional<StampFault> counting_stamps(const Trajectory& trajectory, const FrameSpan& frames) {
+  const auto& entries = trajectory.entries();
+  const int steps = frames.last_index - frames.first_index;
+  if (trajectory.stamps() != Stamps::seconds || entries.size() < 3 || steps < 2) {
+    return std::nullopt;
+  }
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    if (entries[i].stamp != std::floor(entries[i].stamp)) return std::nullopt;
+  }
+  const double stamps_s = entries.back().stamp - entries.front().stamp;
+  const double stamp_step_s = stamps_s / static_cast<double>(entries.size() - 1);
+  const double frame_step_s = (frames.last_s - frames.first_s) / steps;
+  if (stamp_step_s < 0.5 || frame_step_s > 0.5 * stamp_step_s) return std::nullopt;
+  return StampFault{fmt::format("its stamps run from {} s, one a second, {}",
+                                range_text(entries.front().stamp, entries.back().stamp),
+                                frames_text(frames, Stamps::seconds)),
+                    "frame numbers are written without decimals"};
+}
+
 std::optional<StampFault> shifted_stamps(const Trajectory& trajectory, int frames) {
   const auto& entries = trajectory.entries();
   if (trajectory.stamps() != Stamps::indices || frames < 2) return std::nullopt;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "capture/pose/pose_convention.h"
 #include "capture/pose/stamp_check.h"
 #include "capture/pose/trajectory.h"
 #include "capture/source/stated_rate.h"
@@ -7,7 +8,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <sstream>
+#include <vector>
 
 namespace sheen::capture::test {
 namespace {
@@ -94,6 +97,66 @@ TEST(Stamps, CountsFromOneAreSaid) {
   EXPECT_FALSE(shifted_stamps(from_one, 41));
   for (auto& entry : entries) entry.stamp -= 1;
   EXPECT_FALSE(shifted_stamps(Trajectory(entries), 40));
+}
+
+TEST(Stamps, SecondsThatCountFramesAreTold) {
+  std::vector<Trajectory::Entry> entries;
+  for (int i = 0; i < 90; ++i) entries.push_back({static_cast<double>(i)});
+  const Trajectory counting(entries, Stamps::seconds);
+  FrameSpan frames{
+      .count = 90, .first_index = 0, .last_index = 89, .first_s = 0, .last_s = 89 / 30.0};
+  ASSERT_TRUE(counting_stamps(counting, frames));
+  EXPECT_NE(counting_stamps(counting, frames)->fault.find("0 to 89"), std::string::npos);
+  EXPECT_FALSE(counting_stamps(Trajectory(entries, Stamps::indices), frames));
+  frames.last_s = 89;  // a camera that takes one a second
+  EXPECT_FALSE(counting_stamps(counting, frames));
+  frames.last_s = 89 / 30.0;
+  entries[5].stamp = 5.5;
+  EXPECT_FALSE(counting_stamps(Trajectory(entries, Stamps::seconds), frames));
+}
+
+TEST(PoseConvention, NamesWhatWasDoneToThePoses) {
+  core::CameraModel::Intrinsics lens;
+  lens.width_px = 640;
+  lens.height_px = 480;
+  lens.focal_px = {600, 600};
+  lens.principal_px = {320, 240};
+  const core::CameraModel camera(lens);
+  // Cameras on a circle of 0.4 m, 0.3 m high, that look at the origin.
+  std::vector<Eigen::Isometry3d> good;
+  for (int i = 0; i < 12; ++i) {
+    const Eigen::Vector3d eye(0.4 * std::cos(0.5 * i), 0.4 * std::sin(0.5 * i), 0.3);
+    Eigen::Matrix3d axes;
+    axes.col(2) = -eye.normalized();
+    axes.col(0) = axes.col(2).cross(Eigen::Vector3d::UnitZ()).normalized();
+    axes.col(1) = axes.col(2).cross(axes.col(0));
+    Eigen::Isometry3d board_from_camera = Eigen::Isometry3d::Identity();
+    board_from_camera.linear() = axes;
+    board_from_camera.translation() = eye;
+    good.push_back(board_from_camera.inverse());
+  }
+  const Eigen::Vector3d middle(0.01, 0, 0.02);
+  EXPECT_FALSE(other_convention(good, camera, middle));
+  EXPECT_FALSE(other_convention({}, camera, middle));
+  const auto said = [&](const auto& change) {
+    std::vector<Eigen::Isometry3d> changed;
+    for (const auto& pose : good) changed.push_back(change(pose.inverse()).inverse());
+    const auto found = other_convention(changed, camera, middle);
+    return found ? found->fault : std::string();
+  };
+  const auto inverted = [](Eigen::Isometry3d pose) { return pose.inverse(); };
+  const auto w_first = [](Eigen::Isometry3d pose) {
+    const Eigen::Quaterniond q(pose.linear());
+    pose.linear() = Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()).toRotationMatrix();
+    return pose;
+  };
+  const auto backwards = [](Eigen::Isometry3d pose) {
+    pose.linear() = pose.linear() * Eigen::Vector3d(1, -1, -1).asDiagonal();
+    return pose;
+  };
+  EXPECT_NE(said(inverted).find("board to the camera"), std::string::npos);
+  EXPECT_NE(said(w_first).find("begin with w"), std::string::npos);
+  EXPECT_NE(said(backwards).find("OpenGL"), std::string::npos);
 }
 
 TEST(StatedRate, SpeaksUpBeyondHalfAFrame) {
