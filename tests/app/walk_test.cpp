@@ -43,7 +43,7 @@ TEST_F(Walk, SaysThatAnotherBoardNeedsItsFile) {
   EXPECT_EQ(std::count(run.standard_error.begin(), run.standard_error.end(), '\n'), 1);
   EXPECT_NE(run.standard_error.find(
                 "its first image shows another board than the sheet of sheen board, which holds "
-                "none of the tags in the images (ids 0, ...): give the file of that board: "
+                "none of the tags in the images (ids 0, ...); give the file of that board: "
                 "--board board.yaml"),
             std::string::npos)
       << run.standard_error;
