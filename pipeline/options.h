@@ -48,7 +48,7 @@ struct ReconstructionOptions {
   double texel_px = 1.5;  ///< of texel patches: longest edge, pixels, > 0
   core::SamplingLimits limits{};
   PhotometricOptions photometric{};
-  core::PatchShare share{};  ///< of the patches: the only ones that are fitted
+  core::PatchShare share{};        ///< of the patches: the only ones that are fitted
   bool refine_mesh = false;        ///< move the mesh's vertices to where the pictures agree
   bool refine_board = false;       ///< refine the tags' places before their poses are used
   bool refuse_mismatches = false;  ///< keep frames out that contradict the model

@@ -11,9 +11,9 @@
 
 namespace sheen::core {
 
-/// An image (CV_8UC3 BGR, not empty) as the bytes of a PNG file, without loss. `effort` from 1 to 9:
-/// as small as the encoder can, at several times the time of a middle one. Equal images give equal
-/// bytes.
+/// An image (CV_8UC3 BGR, not empty) as the bytes of a PNG file, without loss. `effort` from 1 to
+/// 9: as small as the encoder can, at several times the time of a middle one. Equal images give
+/// equal bytes.
 std::vector<std::uint8_t> encode_png(const cv::Mat& image, int effort = 9);
 
 /// The image back, CV_8UC3 BGR. Nothing where the bytes are not a PNG of this size with three

@@ -59,8 +59,7 @@ DirectedColour SampleStore::at(std::size_t idx, const SamplePool& pool) const {
   assert(idx < size_);
   const SampleBlock& block = block_of(idx, pool);
   const std::size_t i = idx % SampleBlock::kSamples;
-  return {direction(idx, pool),
-          {colour(block.r[i]), colour(block.g[i]), colour(block.b[i])}};
+  return {direction(idx, pool), {colour(block.r[i]), colour(block.g[i]), colour(block.b[i])}};
 }
 
 Eigen::Vector2f SampleStore::direction(std::size_t idx, const SamplePool& pool) const {
