@@ -3,7 +3,7 @@
 
 #include "capture/pose/board_tags.h"
 #include "core/diagnostics/error.h"
-#include "pipeline/spread_views.h"
+#include "pipeline/thinned.h"
 
 namespace sheen::pipeline {
 namespace {
@@ -23,14 +23,14 @@ std::optional<capture::BoardRefinement> refine_session_board(const capture::Sess
   const capture::Board board = capture::read_board(*session.board);
   capture::BoardTagFinder finder(board, session.camera);
   const auto frames = capture::open_frames(session, start, end);
-  SpreadViews views(kMostBoardViews);
+  Thinned<std::vector<capture::TagDetection>> views(kMostBoardViews);
   for (int i = 0; const auto frame = frames->next(); ++i) {
     sink.progress({"refining the board", i + 1});
-    if (!views.wants_next()) continue;
+    if (!views.is_due()) continue;
     finder.look_at(*frame);
     views.add(finder.find());
   }
-  return capture::refine_board(board, session.camera, views.views(), lens);
+  return capture::refine_board(board, session.camera, views.items(), lens);
 }
 
 }  // namespace sheen::pipeline

@@ -5,7 +5,7 @@
 #include "capture/pose/board_tags.h"
 #include "capture/source/image_folder_source.h"
 #include "core/diagnostics/error.h"
-#include "pipeline/spread_views.h"
+#include "pipeline/thinned.h"
 
 #include <fmt/format.h>
 
@@ -18,10 +18,10 @@ namespace {
 constexpr std::size_t kMostWalkViews = 160;
 constexpr int kRecogniseFrames = 20;  // where only the board is asked for
 
-using Tags = SpreadViews::Tags;
+using Tags = std::vector<capture::TagDetection>;
 
 struct SeenTags {
-  SpreadViews views{kMostWalkViews};
+  Thinned<Tags> views{kMostWalkViews};
   int frames = 0;
   int frames_with_two = 0;  ///< of those looked at
 };
@@ -47,7 +47,7 @@ SeenTags read_tags(const capture::Session& session, const capture::Board& board,
   while (const auto frame = frames->next()) {
     sink.progress({"finding tags", seen.frames + 1, frames->frame_count().value_or(0)});
     ++seen.frames;
-    if (!seen.views.wants_next()) continue;
+    if (!seen.views.is_due()) continue;
     finder.look_at(*frame);
     Tags tags = finder.find();
     if (tags.empty() && seen.frames == 1 && !session.board) {
@@ -88,7 +88,7 @@ capture::LensPrior prior_of(const capture::Session& session) {
 
 capture::WalkCalibration calibrate(const capture::Session& session, const capture::Board& board,
                                    const SeenTags& seen) {
-  const auto found = capture::calibrate_from_walk(board, prior_of(session), seen.views.views());
+  const auto found = capture::calibrate_from_walk(board, prior_of(session), seen.views.items());
   const std::string fault =
       found ? capture::find_fault(*found) : "no lens explains where the tags are seen";
   if (fault.empty()) return *found;
@@ -109,7 +109,7 @@ WalkFindings read_walk(const capture::Session& session, const FrameChoice& choic
   require_tags(session, seen);
   if (!session.board) {
     Tags all;
-    for (const Tags& tags : seen.views.views()) all.insert(all.end(), tags.begin(), tags.end());
+    for (const Tags& tags : seen.views.items()) all.insert(all.end(), tags.begin(), tags.end());
     findings.sheet = capture::recognise_default_sheet(all);
     findings.board = capture::default_board(findings.sheet.value());
   }

@@ -8,7 +8,7 @@
 #include "pipeline/evidence/finding.h"
 #include "pipeline/evidence/light_evidence.h"
 #include "pipeline/evidence/outline_evidence.h"
-#include "pipeline/evidence/thinned.h"
+#include "pipeline/thinned.h"
 
 #include <Eigen/Geometry>
 

@@ -6,7 +6,7 @@
 #include "capture/source/frame.h"
 #include "core/geometry/camera.h"
 #include "pipeline/evidence/finding.h"
-#include "pipeline/evidence/thinned.h"
+#include "pipeline/thinned.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

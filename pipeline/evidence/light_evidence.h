@@ -4,7 +4,7 @@
 #include "core/samples/sample_batch.h"
 #include "core/samples/vertex_view.h"
 #include "pipeline/evidence/finding.h"
-#include "pipeline/evidence/thinned.h"
+#include "pipeline/thinned.h"
 
 #include <Eigen/Core>
 

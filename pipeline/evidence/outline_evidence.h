@@ -5,7 +5,7 @@
 #include "core/geometry/camera.h"
 #include "core/mesh/mesh.h"
 #include "pipeline/evidence/finding.h"
-#include "pipeline/evidence/thinned.h"
+#include "pipeline/thinned.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>

@@ -4,7 +4,7 @@
 #include "pipeline/evidence/corner_evidence.h"
 #include "pipeline/evidence/light_evidence.h"
 #include "pipeline/evidence/outline_evidence.h"
-#include "pipeline/evidence/thinned.h"
+#include "pipeline/thinned.h"
 #include "tests/capture/rendered_board.h"
 
 #include <gtest/gtest.h>
