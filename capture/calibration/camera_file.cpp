@@ -111,6 +111,10 @@ void read_camera_matrix(const KeyReader& reader, LensRecord& record) {
       {"camera_matrix", "Camera_Matrix", "cameraMatrix", "CameraMatrix", "K", "k", "mtx"});
   if (words == nullptr) reader.fail("camera_matrix is missing or no matrix of the expected size");
   const std::vector<double> K = reader.numbers("camera_matrix", *words);
+  if (K.size() > 9 && K.size() <= 18) {
+    reader.fail("camera_matrix holds " + std::to_string(K.size()) +
+                " numbers, not 9; are there decimal commas? write points");
+  }
   if (K.size() != 9) reader.fail("camera_matrix is not 3 x 3");
   if (K[3] != 0 || K[6] != 0 || K[7] != 0 || K[8] != 1 || std::abs(K[1]) > 1e-9 * std::abs(K[0])) {
     reader.fail("camera_matrix is not of the form fx 0 cx, 0 fy cy, 0 0 1");

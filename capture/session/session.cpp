@@ -32,7 +32,15 @@ class SessionReader {
  public:
   explicit SessionReader(const std::filesystem::path& folder)
       : folder_(folder), path_(folder / "session.json") {
-    root_ = json::parse(read_text_file(path_, kMaxSessionBytes), nullptr, false);
+    const std::string text = read_text_file(path_, kMaxSessionBytes);
+    try {
+      root_ = json::parse(text);
+    } catch (const json::parse_error& fault) {
+      const auto before = static_cast<std::ptrdiff_t>(std::min(fault.byte, text.size()));
+      const auto line = 1 + std::count(text.begin(), text.begin() + before, '\n');
+      this->fail("is no valid JSON (line " + std::to_string(line) + ")",
+                 "check commas, quotes and brackets there; JSON has no comments");
+    }
     if (!root_.is_object()) fail("is no JSON object");
   }
 

@@ -14,6 +14,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
+#include <string>
 #include <utility>
 
 namespace sheen::core {
@@ -26,6 +28,30 @@ constexpr double kFarthest_m = 1e9;
 constexpr double kDoubtfulGrid = 1e-4,
                  kUselessGrid = 0.02;  // steps of positions, of the mesh's size
 constexpr double kContradicting = 0.9, kFewContradicting = 0.1;  // shares of the normals
+
+/// What files begin with whose ending says something else.
+struct FileKind {
+  const char* start;
+  const char* ending;  ///< null for what is not read
+  const char* name;
+};
+constexpr FileKind kFileKinds[] = {
+    {"glTF", ".glb", "binary glTF"},   {"ply", ".ply", "PLY"}, {"solid ", nullptr, "STL"},
+    {"Kaydara FBX", nullptr, "FBX"},   {"PK", nullptr, "ZIP"}, {"<?xml", nullptr, "XML"},
+    {"{", nullptr, "JSON (glTF text)"}};
+
+void check_kind(const fs::path& path, const std::string& extension) {
+  std::ifstream file(path, std::ios::binary);
+  std::string start(16, '\0');
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  for (const FileKind& kind : kFileKinds) {
+    if (!start.starts_with(kind.start)) continue;
+    if (kind.ending != nullptr && extension == kind.ending) return;
+    throw bad_input(path, std::string("is a file of kind ") + kind.name + ", whatever its ending",
+                    kind.ending != nullptr ? std::string("give it the ending ") + kind.ending
+                                           : "convert it to PLY, OBJ or GLB");
+  }
+}
 
 void check_file(const fs::path& path) {
   const std::string extension = lower_case(path.extension().string());
@@ -40,6 +66,7 @@ void check_file(const fs::path& path) {
   if (fs::file_size(path, failure) == 0) {
     throw bad_input(path, "is empty", "write the mesh again");
   }
+  check_kind(path, extension);
 }
 
 MeshFile read_mesh_file(const fs::path& path) {

@@ -57,6 +57,14 @@ class CameraForms : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
+TEST_F(CameraForms, DecimalCommasAreNamed) {
+  refuse("camera.yaml",
+         "image_width: 640\nimage_height: 480\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
+         "  data: [600,5, 0, 320, 0, 600,5, 240, 0, 0, 1]\n"
+         "distortion_coefficients:\n  rows: 1\n  cols: 4\n  data: [0, 0, 0, 0]\n",
+         "decimal commas");
+}
+
 std::string ros(const std::string& model, const std::string& coefficients, bool is_fisheye) {
   const std::string K = is_fisheye ? "[420.5, 0, 638.5, 0, 421.25, 361.75, 0, 0, 1]"
                                    : "[900.5, 0.0, 641.5, 0.0, 902.25, 357.75, 0.0, 0.0, 1.0]";

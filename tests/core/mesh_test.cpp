@@ -131,6 +131,23 @@ TEST(ReadMesh, AngleWeightsMakeCubeNormalsDiagonal) {
   }
 }
 
+TEST(ReadMesh, NamesWhatAFileIsWhateverItsEnding) {
+  const tests::TemporaryFolder folder;
+  const auto refusal = [&](const char* name, const std::string& bytes) -> std::string {
+    folder.write(name, bytes);
+    try {
+      static_cast<void>(read_mesh(folder.path() / name));
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return {};
+  };
+  EXPECT_NE(refusal("a.obj", "solid a\n facet normal 0 0 1\n").find("STL"), std::string::npos);
+  EXPECT_NE(refusal("a.ply", "glTF\2\0\0\0 ").find(".glb"), std::string::npos);
+  EXPECT_NE(refusal("b.obj", "ply\nformat ascii 1.0\n").find(".ply"), std::string::npos);
+  EXPECT_NE(refusal("a.glb", "{\"asset\": {}}").find("glTF text"), std::string::npos);
+}
+
 TEST(ReadMesh, TurnsAClosedSurfaceThatIsInsideOut) {
   const TemporaryFolder folder;
   const Mesh mesh = read_mesh(write_file(folder / "cube.ply", cube_ply(true)));
