@@ -3,6 +3,7 @@
 
 #include "core/diagnostics/error.h"
 #include "fitting/descriptor.h"
+#include "fitting/patch_fitter.h"
 
 #include <algorithm>
 #include <string>
@@ -56,7 +57,8 @@ pipeline::SamplesListener SessionState::listener() {
 }
 
 void SessionState::open(const fs::path& path, const fitting::StateHeader& header) {
-  if (fitting::make_fitter(header.representation, header.mesh, header.options)->needs_images()) {
+  const auto fitter = fitting::make_fitter(header.representation, header.mesh, header.options);
+  if (dynamic_cast<const fitting::PatchFitter*>(fitter.get()) == nullptr) {
     throw core::bad_input(path,
                           "cannot be written: " + header.representation +
                               " is fitted to images, a state holds samples",

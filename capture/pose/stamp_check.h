@@ -24,8 +24,8 @@ struct StampFault {
 /// Why no frame of a recording has a pose in its file: stamps of another clock, unit or count.
 StampFault unmatched_stamps(const Trajectory& trajectory, const FrameSpan& frames);
 
-/// Stamps in seconds that count frames: whole, one a second, where the frames take less than half
-/// of that. They give few frames a pose.
+/// Stamps in seconds that count frames: whole, one a second, past the recording's end, where the
+/// frames take less than half of that. They give few frames a pose.
 std::optional<StampFault> counting_stamps(const Trajectory& trajectory, const FrameSpan& frames);
 
 /// Stamps that name the wrong frames although they match: indices that count from 1 for a recording

@@ -196,7 +196,8 @@ void expect_ranking(const nlohmann::json& rows) {
   const auto results = by_name(rows);
   const auto psnr_of = [&](const char* name) { return results.at(name).at("psnr").get<double>(); };
   for (const auto& [name, row] : results) {
-    if (name != "mean") {
+    // But for whole pictures that are blended without moving anything (docs/systems.md).
+    if (name != "mean" && name != "multi-eigenspace") {
       EXPECT_GT(row.at("psnr"), psnr_of("mean")) << name;
     }
     // The mean of a view's decibels is not that of its errors, but near: views differ by less than

@@ -121,8 +121,9 @@ TEST(BoardPlan, LeavesTheMiddleFreeAndNumbersTheRimWithoutGaps) {
   EXPECT_EQ(plan.columns, 5);
   EXPECT_EQ(plan.rows, 7);
   ASSERT_EQ(plan.board.tags.size(), 20U);
-  EXPECT_EQ(plan.board.tags.begin()->first, 0);
-  EXPECT_EQ(plan.board.tags.rbegin()->first, 19);
+  // The default sheet's ids begin at 500.
+  EXPECT_EQ(plan.board.tags.begin()->first, 500);
+  EXPECT_EQ(plan.board.tags.rbegin()->first, 519);
   // Nothing of a tag reaches into the free middle, whose size is stated.
   for (const auto& [id, tag] : plan.board.tags) {
     const Eigen::Vector3d centre = tag.board_from_tag.translation();

@@ -111,6 +111,8 @@ TEST(Stamps, SecondsThatCountFramesAreTold) {
   frames.last_s = 89;  // a camera that takes one a second
   EXPECT_FALSE(counting_stamps(counting, frames));
   frames.last_s = 89 / 30.0;
+  // A pose a second for these three seconds.
+  EXPECT_FALSE(counting_stamps(Trajectory({{0.0}, {1.0}, {2.0}}, Stamps::seconds), frames));
   entries[5].stamp = 5.5;
   EXPECT_FALSE(counting_stamps(Trajectory(entries, Stamps::seconds), frames));
 }

@@ -81,7 +81,8 @@ inline std::vector<std::string> representation_names() {
   std::vector<std::string> names;
   for (const Descriptor* descriptor : representations()) {
     const std::string name(descriptor->name);
-    if (!make_fitter(name, point)->needs_images()) names.push_back(name);
+    const auto fitter = make_fitter(name, point);
+    if (dynamic_cast<const PatchFitter*>(fitter.get()) != nullptr) names.push_back(name);
   }
   return names;
 }
