@@ -24,7 +24,7 @@ constexpr const char* kHard = "hard";
 constexpr std::size_t kMostViews = std::size_t{1} << 16;
 constexpr std::size_t kChannels = 4;
 
-struct Arrays {
+struct StoredArrays {
   Frame frame{};
   std::vector<Vector> directions;
   std::vector<std::uint32_t> dimensions;
@@ -39,8 +39,8 @@ void append(const cv::Mat& picture, std::vector<std::byte>& bytes) {
   bytes.insert(bytes.end(), begin, begin + picture.total() * picture.elemSize());
 }
 
-Arrays arrays_of(const MultiEigenspace& model) {
-  Arrays arrays;
+StoredArrays arrays_of(const MultiEigenspace& model) {
+  StoredArrays arrays;
   const auto& [centre, radius_m, up] = model.frame();
   arrays.frame = {centre.x(), centre.y(), centre.z(), radius_m, up.x(), up.y(), up.z()};
   for (const auto& one : model.directions()) {
@@ -200,7 +200,7 @@ ModelPart encode_model(const LightField& light_field) {
   part.parameters["entries"] = model.views().size();
   // glTF knows no empty bufferView.
   if (model.owners().empty()) return part;
-  const auto arrays = std::make_shared<const Arrays>(arrays_of(model));
+  const auto arrays = std::make_shared<const StoredArrays>(arrays_of(model));
   part.arrays["frame"] = std::as_bytes(std::span(arrays->frame));
   part.arrays["directions"] = std::as_bytes(std::span(arrays->directions));
   part.arrays["owners"] = std::as_bytes(std::span(model.owners()));

@@ -146,7 +146,7 @@ TEST(PoseConvention, NamesWhatWasDoneToThePoses) {
     const auto found = other_convention(changed, camera, middle);
     return found ? found->fault : std::string();
   };
-  const auto inverted = [](Eigen::Isometry3d pose) { return pose.inverse(); };
+  const auto inverted = [](const Eigen::Isometry3d& pose) { return pose.inverse(); };
   const auto w_first = [](Eigen::Isometry3d pose) {
     const Eigen::Quaterniond q(pose.linear());
     pose.linear() = Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()).toRotationMatrix();
