@@ -130,7 +130,7 @@ void add_model_options(Command command, const WantedPatches& patches, ReplayOpti
 }  // namespace
 
 void add_model_options(Command command, ReplayOptions& options) {
-  add_model_options(command, std::make_shared<std::optional<Patches>>(), options);
+  add_model_options(std::move(command), std::make_shared<std::optional<Patches>>(), options);
 }
 
 void add_replay_options(Command command, ReplayOptions& options) {

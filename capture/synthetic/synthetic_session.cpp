@@ -10,6 +10,7 @@
 #include "capture/synthetic/motion_jpeg_file.h"
 #include "capture/synthetic/render_camera.h"
 #include "capture/synthetic/torus_knot.h"
+#include "core/diagnostics/error.h"
 #include "core/files/staged_output.h"
 #include "core/files/write_file.h"
 #include "core/image/png.h"
