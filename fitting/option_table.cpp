@@ -36,6 +36,10 @@ void refuse_value(const std::string& name, const std::string& text, const std::s
   throw std::invalid_argument("--" + name + " is \"" + text + "\", allowed: " + allowed);
 }
 
+void require_value(bool holds, const std::string& name, double value, const std::string& allowed) {
+  if (!holds) refuse_value(name, text_of(value), allowed);
+}
+
 FitOption number_option(std::string name, double& value, double least, double most,
                         std::string help) {
   FitOption option{name, std::move(help), "NUMBER", {}, [&value] { return text_of(value); }};

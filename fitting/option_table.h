@@ -93,6 +93,9 @@ void apply(const OptionValues& values, std::string_view representation, const Op
 [[noreturn]] void refuse_value(const std::string& name, const std::string& text,
                                const std::string& allowed);
 
+/// The same unless `holds`.
+void require_value(bool holds, const std::string& name, double value, const std::string& allowed);
+
 template <typename Value>
 FitOption choice_option(std::string name, Value& value,
                         std::vector<std::pair<std::string, Value>> words, std::string help) {

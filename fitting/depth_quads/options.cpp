@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/depth_quads/options.h"
 
-#include <stdexcept>
 #include <string>
 
 namespace sheen::fitting::depth_quads {
@@ -12,12 +11,6 @@ constexpr int kMostLevels = 6;
 constexpr int kMostMedian = 9;
 constexpr int kMostCameras = 64;
 
-void demand(bool holds, const char* name, double value, const std::string& allowed) {
-  if (holds) return;
-  throw std::invalid_argument(std::string(name) + " is " + std::to_string(value) +
-                              ", allowed: " + allowed);
-}
-
 bool is_odd_within(int value, int most) {
   return value >= 1 && value <= most && value % 2 == 1;
 }
@@ -25,15 +18,15 @@ bool is_odd_within(int value, int most) {
 }  // namespace
 
 void Options::check() const {
-  demand(is_odd_within(spacing_px, kMostSpacing_px), "spacing", spacing_px,
-         "odd numbers from 1 to " + std::to_string(kMostSpacing_px));
-  demand(levels >= 1 && levels <= kMostLevels, "levels", levels,
-         "1 to " + std::to_string(kMostLevels));
-  demand(enlargement >= 0 && enlargement <= 1, "enlargement", enlargement, "0 to 1");
-  demand(is_odd_within(median, kMostMedian), "median", median,
-         "odd numbers from 1 to " + std::to_string(kMostMedian));
-  demand(cameras >= 1 && cameras <= kMostCameras, "cameras", cameras,
-         "1 to " + std::to_string(kMostCameras));
+  require_value(is_odd_within(spacing_px, kMostSpacing_px), "spacing", spacing_px,
+                "odd numbers from 1 to " + std::to_string(kMostSpacing_px));
+  require_value(levels >= 1 && levels <= kMostLevels, "levels", levels,
+                "1 to " + std::to_string(kMostLevels));
+  require_value(enlargement >= 0 && enlargement <= 1, "enlargement", enlargement, "0 to 1");
+  require_value(is_odd_within(median, kMostMedian), "median", median,
+                "odd numbers from 1 to " + std::to_string(kMostMedian));
+  require_value(cameras >= 1 && cameras <= kMostCameras, "cameras", cameras,
+                "1 to " + std::to_string(kMostCameras));
   fitting::check(views);
 }
 

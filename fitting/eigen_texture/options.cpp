@@ -3,7 +3,6 @@
 
 #include "fitting/detail/options.h"
 
-#include <stdexcept>
 #include <string>
 
 namespace sheen::fitting::eigen_texture {
@@ -13,19 +12,15 @@ constexpr int kMostBases = 256;
 constexpr int kLeastSide = 16;
 constexpr int kMostSide = 4096;
 
-void demand(bool holds, const char* name, double value, const std::string& allowed) {
-  if (holds) return;
-  throw std::invalid_argument(std::string(name) + " is " + std::to_string(value) +
-                              ", allowed: " + allowed);
-}
-
 }  // namespace
 
 void Options::check() const {
-  demand(bases >= 0 && bases <= kMostBases, "bases", bases, "0 to " + std::to_string(kMostBases));
-  demand(texture_side >= kLeastSide && texture_side <= kMostSide, "texture-side", texture_side,
-         std::to_string(kLeastSide) + " to " + std::to_string(kMostSide));
-  demand(!texel_mm || *texel_mm > 0.0f, detail::kTexelOption, texel_mm.value_or(0), "above 0");
+  require_value(bases >= 0 && bases <= kMostBases, "bases", bases,
+                "0 to " + std::to_string(kMostBases));
+  require_value(texture_side >= kLeastSide && texture_side <= kMostSide, "texture-side",
+                texture_side, std::to_string(kLeastSide) + " to " + std::to_string(kMostSide));
+  require_value(!texel_mm || *texel_mm > 0.0f, detail::kTexelOption, texel_mm.value_or(0),
+                "above 0");
 }
 
 OptionTable option_table(Options& options) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/multi_eigenspace/options.h"
 
-#include <stdexcept>
 #include <string>
 
 namespace sheen::fitting::multi_eigenspace {
@@ -12,19 +11,17 @@ constexpr int kLeastPicture_px = 16;
 constexpr int kMostPicture_px = 1024;
 constexpr double kMostSpacing_deg = 90;
 
-void refuse_beyond(const char* name, double value, double least, double most) {
-  if (value >= least && value <= most) return;
-  throw std::invalid_argument(std::string(name) + " is " + std::to_string(value) + ", allowed: " +
-                              std::to_string(least) + " to " + std::to_string(most));
-}
-
 }  // namespace
 
 void Options::check() const {
-  refuse_beyond("eigenimages", eigenimages, 0, kMostEigenimages);
-  refuse_beyond("space-tolerance", tolerance, 0, kMostTolerance);
-  refuse_beyond("picture-size", picture_px, kLeastPicture_px, kMostPicture_px);
-  refuse_beyond("view-spacing", view_spacing_deg, 0, kMostSpacing_deg);
+  require_value(eigenimages >= 0 && eigenimages <= kMostEigenimages, "eigenimages", eigenimages,
+                "0 to " + std::to_string(kMostEigenimages));
+  require_value(tolerance >= 0 && tolerance <= kMostTolerance, "space-tolerance", tolerance,
+                "0 to 255");
+  require_value(picture_px >= kLeastPicture_px && picture_px <= kMostPicture_px, "picture-size",
+                picture_px, "16 to 1024");
+  require_value(view_spacing_deg >= 0 && view_spacing_deg <= kMostSpacing_deg, "view-spacing",
+                view_spacing_deg, "0 to 90");
 }
 
 OptionTable option_table(Options& options) {

@@ -177,8 +177,9 @@ void StateReader::read_header() {
     for (int i = 0; i < 3; ++i) {
       header_.mesh.offset[i] = header.at("offset").at(static_cast<std::size_t>(i)).get<double>();
     }
-    header_.share = {header.at("share").at(0).get<std::uint32_t>(),
-                     header.at("share").at(1).get<std::uint32_t>()};
+    if (const auto share = header.find("share"); share != header.end()) {  // else all patches
+      header_.share = {share->at(0).get<std::uint32_t>(), share->at(1).get<std::uint32_t>()};
+    }
     read_mesh(header.at("vertices").get<std::size_t>(), header.at("triangles").get<std::size_t>());
   } catch (const nlohmann::json::exception&) {
     fail("was altered: its header cannot be read");

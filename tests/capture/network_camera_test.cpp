@@ -5,6 +5,7 @@
 #include "capture/source/arrival_clock.h"
 #include "capture/source/network_address.h"
 #include "capture/source/open_camera.h"
+#include "tests/capture/camera_refusal.h"
 #include "tests/capture/expect_bad_input.h"
 #include "tests/capture/recording_frames.h"
 #include "tests/capture/scripted_http.h"
@@ -60,25 +61,6 @@ std::vector<int> numbers_from(int first, int last) {
   std::vector<int> numbers;
   for (int i = first; i <= last; ++i) numbers.push_back(i);
   return numbers;
-}
-
-/// What a camera says that cannot be opened.
-std::string refusal(const NetworkCameraOptions& options) {
-  try {
-    NetworkCamera camera(options);
-  } catch (const core::Error& error) {
-    const std::string what = error.what();
-    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
-    EXPECT_EQ(what.find("secret"), std::string::npos) << what;
-    return what;
-  }
-  ADD_FAILURE() << "was opened";
-  return {};
-}
-
-bool has(const std::string& text, const std::string& word) {
-  EXPECT_NE(text.find(word), std::string::npos) << text << " lacks " << word;
-  return text.find(word) != std::string::npos;
 }
 
 TEST(ShownAddress, HoldsNoCredentials) {

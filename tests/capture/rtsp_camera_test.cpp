@@ -4,6 +4,7 @@
 #include "capture/session/session.h"
 #include "capture/source/network_camera.h"
 #include "capture/source/video_source.h"
+#include "tests/capture/camera_refusal.h"
 #include "tests/capture/recording_frames.h"
 #include "tests/capture/rtsp_server.h"
 #include "tests/capture/scripted_http.h"
@@ -170,24 +171,6 @@ TEST_F(RtspCamera, IsCalibratedFrom) {
   EXPECT_EQ(numbers.front(), 0);
   EXPECT_GE(numbers.size(), 3u);
   EXPECT_EQ(std::count(numbers.begin(), numbers.end(), -1), 0);
-}
-
-std::string refusal(const NetworkCameraOptions& options) {
-  try {
-    NetworkCamera camera(options);
-  } catch (const core::Error& error) {
-    const std::string what = error.what();
-    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
-    EXPECT_EQ(what.find("secret"), std::string::npos) << what;
-    return what;
-  }
-  ADD_FAILURE() << "was opened";
-  return {};
-}
-
-bool has(const std::string& text, const std::string& word) {
-  EXPECT_NE(text.find(word), std::string::npos) << text << " lacks " << word;
-  return text.find(word) != std::string::npos;
 }
 
 TEST(RtspRefusals, WrongPasswordsAndPathsAreNamed) {
