@@ -4,7 +4,6 @@
 #include "core/samples/sample_batch.h"
 
 #include <algorithm>
-#include <compare>
 #include <cstddef>
 #include <cstdint>
 
@@ -15,7 +14,7 @@ namespace sheen::core {
 struct PatchShare {
   std::uint32_t number = 1;
   std::uint32_t of = 1;
-  auto operator<=>(const PatchShare&) const = default;
+  bool operator==(const PatchShare&) const = default;
 
   [[nodiscard]] bool is_whole() const { return of == 1; }
 

@@ -105,7 +105,7 @@ std::vector<JoinedView> join(std::span<const std::unique_ptr<StateReader>> state
     for (std::size_t v = 0; v < states[s]->views().size(); ++v) joined.push_back({s, v});
   }
   std::ranges::sort(joined, {}, [&](const JoinedView& view) {
-    return std::pair(name_of(states, view), states[view.state]->header().share);
+    return std::pair(name_of(states, view), states[view.state]->header().share.number);
   });
   check_complete(states, joined);
   return joined;

@@ -21,6 +21,7 @@ struct StateView {
   std::string session;          ///< name of its folder
   std::uint64_t recording = 0;  ///< tells recordings of one name apart
   int frame = 0;                ///< its index in the recording
+  // NOLINTNEXTLINE(modernize-use-nullptr): sees a null pointer in what the compiler writes
   auto operator<=>(const StateView&) const = default;
 };
 
