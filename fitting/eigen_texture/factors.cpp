@@ -27,6 +27,7 @@ constexpr int kSweeps = 12;
 /// (F^T W F + diag(ridge))^-1 F^T W x.
 VectorXf ridge_regression(const MatrixXf& rows, const VectorXf& value, const VectorXf& weight,
                           const VectorXf& ridge) {
+  if (rows.size() == 0) return VectorXf::Zero(rows.cols());  // no bases yet, or nothing seen
   const MatrixXf weighted = weight.cwiseSqrt().asDiagonal() * rows;
   MatrixXf normal = MatrixXf::Zero(rows.cols(), rows.cols());
   normal.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
