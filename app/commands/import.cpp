@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "app/commands/import.h"
 
+#include "app/terminal_sink.h"
 #include "capture/calibration/camera_file.h"
 #include "capture/dataset/board_alignment.h"
 #include "capture/dataset/dataset_formats.h"
 #include "capture/dataset/import_session.h"
+#include "capture/session/session.h"
+#include "core/diagnostics/error.h"
+#include "pipeline/session_mesh.h"
 
 #include <fmt/format.h>
 
@@ -40,6 +44,21 @@ capture::Dataset read_dataset(const ImportOptions& options, const std::filesyste
   return dataset;
 }
 
+/// Notes what the commands that read the session would refuse or doubt. The session stands: its
+/// mesh may still be registered, and only its user knows which of two units is wrong.
+void note_doubts(const std::filesystem::path& folder, const CommandContext& context) {
+  TerminalSink sink(context);
+  try {
+    capture::Session session = capture::open_session(folder);
+    const core::Mesh mesh = pipeline::read_session_mesh(session, sink);
+    pipeline::SessionScene scene(session, mesh, pipeline::PoseSource::file, sink);
+    for (const Eigen::Isometry3d& pose : pipeline::probe_poses(session, {})) scene.see(pose);
+    scene.finish(sink);
+  } catch (const core::Error& error) {
+    sink.note(error.what());
+  }
+}
+
 void run_import(const ImportOptions& options, const CommandContext& context) {
   context.check_outputs({options.session});
   const std::filesystem::path images =
@@ -63,6 +82,7 @@ void run_import(const ImportOptions& options, const CommandContext& context) {
                         alignment.metres_per_unit, alignment.images, 1000 * alignment.rms_m);
   }
   capture::write_imported_session(import, options.session);
+  note_doubts(options.session, context);
   context.publish(document, text);
 }
 

@@ -2,6 +2,7 @@
 #include "capture/calibration/camera_document.h"
 
 #include "core/diagnostics/error.h"
+#include "core/text/bracket_depth.h"
 #include "core/text/number.h"
 
 #include <nlohmann/json.hpp>
@@ -15,7 +16,6 @@ namespace sheen::capture {
 namespace {
 
 constexpr std::size_t kMostWords = 64;  // of one key: a matrix of 3 x 4 and coefficients are fewer
-constexpr int kDeepest = 60;            // brackets; parsers recurse
 
 [[noreturn]] void fail_unknown(const std::filesystem::path& path) {
   refuse_camera_file(
@@ -23,16 +23,6 @@ constexpr int kDeepest = 60;            // brackets; parsers recurse
       "is neither in OpenCV's FileStorage form nor a camera file of ROS, Kalibr, Agisoft, COLMAP "
       "or "
       "nerfstudio");
-}
-
-/// Refuses text whose brackets are nested deeper than any camera file's, before a parser sees it.
-void check_nesting(const std::string& text, const std::filesystem::path& path) {
-  int depth = 0;
-  for (const char c : text) {
-    if (c == '[' || c == '{') ++depth;
-    if (c == ']' || c == '}') depth = std::max(0, depth - 1);
-    if (depth > kDeepest) refuse_camera_file(path, "is nested too deeply for a camera file");
-  }
 }
 
 void append_words(const std::string& text, std::vector<std::string>& words) {
@@ -244,7 +234,9 @@ CameraDocument parse_camera_document(const std::string& text, const std::filesys
   const std::size_t begin = text.find_first_not_of(" \t\n");
   if (begin == std::string::npos) fail_unknown(path);
   if (text[begin] == '<') return read_xml(text, path);
-  check_nesting(text, path);
+  if (core::bracket_depth(text) > core::kMostBracketDepth) {
+    refuse_camera_file(path, "is nested too deeply for a camera file");
+  }
   if (text[begin] == '{') return {read_json(text, path), false, {}};
   if (text[begin] != '%') {
     if (auto record = read_colmap(text, path)) return {{}, false, std::move(record)};

@@ -32,14 +32,14 @@ std::string common_ending(const Dataset& dataset, const fs::path& folder) {
   return core::lower_case(first);
 }
 
-/// Copies the mesh, or writes it in metres. Returns its name.
+/// Copies the mesh once it is known to be one, or writes it in metres. Returns its name.
 std::string put_mesh(const SessionImport& import, const fs::path& folder) {
+  core::Mesh mesh = core::read_mesh(import.mesh);
   if (!import.mesh_has_unit || import.metres_per_unit == 1) {
     const std::string name = "object" + core::lower_case(import.mesh.extension().string());
     copy_into_session(import.mesh, folder / name);
     return name;
   }
-  core::Mesh mesh = core::read_mesh(import.mesh);
   for (Eigen::Vector3f& position : mesh.positions) {
     position = (import.metres_per_unit * (position.cast<double>() + mesh.offset)).cast<float>();
   }

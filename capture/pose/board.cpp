@@ -5,6 +5,7 @@
 #include "capture/pose/tag_family.h"
 #include "core/diagnostics/error.h"
 #include "core/files/write_file.h"
+#include "core/text/bracket_depth.h"
 #include "core/text/number.h"
 
 #include <yaml-cpp/yaml.h>
@@ -25,8 +26,11 @@ constexpr const char* kRemedy = "see docs/session-format.md for the two layouts 
 /// board.yaml with errors that name the file.
 class BoardReader {
  public:
-  explicit BoardReader(const std::filesystem::path& path)
-      : path_(path), root_(YAML::Load(read_text_file(path, kMaxBoardBytes))) {}
+  explicit BoardReader(const std::filesystem::path& path) : path_(path) {
+    const std::string text = read_text_file(path, kMaxBoardBytes);
+    if (core::bracket_depth(text) > core::kMostBracketDepth) fail("nests its brackets too deep");
+    root_ = YAML::Load(text);
+  }
 
   [[noreturn]] void fail(const std::string& fault) const {
     throw core::bad_input(path_, fault, kRemedy);
