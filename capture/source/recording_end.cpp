@@ -12,9 +12,9 @@ bool is_short(std::optional<int> promised, int decoded, double last_slot) {
 core::Error early_end(const std::filesystem::path& path, int decoded, std::optional<int> promised) {
   std::string fault = "decoding stops after " + std::to_string(decoded) + " frames";
   if (promised) fault += " of " + std::to_string(*promised);
-  return core::bad_input(
-      path, fault,
-      "the file is truncated or damaged: copy it again or choose --end " + std::to_string(decoded));
+  std::string remedy = "the file is truncated or damaged: copy it again";
+  if (decoded > 0) remedy += " or choose --end " + std::to_string(decoded);
+  return core::bad_input(path, fault, remedy);
 }
 
 }  // namespace sheen::capture

@@ -5,6 +5,7 @@
 #include "capture/dataset/transforms_file.h"
 #include "capture/pose/trajectory.h"
 #include "capture/session/session.h"
+#include "core/mesh/read_mesh.h"
 #include "tests/capture/expect_bad_input.h"
 #include "tests/support/temporary_folder.h"
 
@@ -249,7 +250,11 @@ TEST(Dataset, ImportMakesASessionInTheOrderOfNames) {
   for (const DatasetFrame& frame : dataset.frames) {
     write_file(folder.path() / frame.image, frame.image);
   }
-  write_file(folder.path() / "mesh.ply", "mesh");
+  core::Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.normals.assign(3, {0, 0, 1});
+  mesh.triangles = {{0, 1, 2}};
+  core::write_ply(folder.path() / "mesh.ply", mesh);
   write_transforms(folder.path() / "transforms.json", dataset);
   SessionImport import{.dataset = read_dataset(folder.path(), {}),
                        .images = folder.path(),
@@ -268,6 +273,8 @@ TEST(Dataset, ImportMakesASessionInTheOrderOfNames) {
   EXPECT_LT((session.camera.intrinsics().principal_px - kWide.intrinsics().principal_px).norm(),
             1e-6);
   expect_bad_input([&] { write_imported_session(import, folder.path() / "session"); }, "exists");
+  write_file(folder.path() / "mesh.ply", "no mesh");
+  expect_bad_input([&] { write_imported_session(import, folder.path() / "other"); }, "mesh.ply");
   std::filesystem::remove(folder.path() / dataset.frames[2].image);
   expect_bad_input([&] { write_imported_session(import, folder.path() / "other"); }, "view 4.png");
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "other"));
