@@ -242,6 +242,24 @@ def check_colmap(project, folder):
     assert points > 100 and error < 1, said
 
 
+def check_bundler(sheen, session, poses, choice, folder):
+    """A bundle file that COLMAP's converter writes from our export brings the same poses back."""
+    if not shutil.which("colmap"):
+        return
+    folder.mkdir()
+    project, back = folder / "project", folder / "imported"
+    run(sheen, "export", session, "-o", project, "--format", "colmap", "--undistort", *choice)
+    run("colmap", "model_converter", "--input_path", project / "sparse" / "0", "--output_path", folder / "bundle",
+        "--output_type", "Bundler")
+    run(sheen, "import", folder / "bundle.bundle.out", "--images", project / "images", "--mesh", project / "object.ply",
+        "-o", back)
+    written, true = from_poses(back / "poses.txt", back / "camera.yaml"), from_poses(poses, session / "camera.yaml")
+    worst = max(max(np.abs(written.poses[i][k] - true.poses[i][k]).max() for k in (0, 1)) for i in true.poses)
+    print(f"  Bundler, by COLMAP's converter: poses within {worst:.1e}")
+    # poses.txt and the bundle file keep nine digits and more of numbers up to 1.
+    assert len(written.poses) == FRAMES and worst < 1e-6, worst
+
+
 def check_session(sheen, session, dictionary, with_colmap, folder):
     name = session.name
     print(name)
@@ -279,6 +297,7 @@ def check_session(sheen, session, dictionary, with_colmap, folder):
     check_import(sheen, project, poses, session / "camera.yaml", folder / f"{name}-imported-colmap")
     if with_colmap:
         check_colmap(project, folder / f"{name}-triangulated")
+        check_bundler(sheen, session, poses, choice, folder / f"{name}-bundler")
 
 
 def camera_numbers(session):
