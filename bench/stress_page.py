@@ -25,7 +25,8 @@ PAGE = """<!doctype html>
 <style>
 {{style}}
 .charts { grid-template-columns: repeat(auto-fill, minmax(340px, 1fr)); }
-td.wide { white-space: normal; min-width: 22em; }
+td.wide { white-space: normal; min-width: 13em; text-align: left; }
+th, td { padding-inline: .4em; }
 </style>
 </head>
 <body>

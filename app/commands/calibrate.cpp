@@ -31,6 +31,7 @@ struct CalibrateOptions {
   std::filesystem::path image;
   std::string chessboard;
   double square_mm = 25;
+  bool is_fisheye = false;
   int views = 40;
   double seconds = 40;
 };
@@ -131,7 +132,9 @@ std::optional<capture::Calibration> calibrate(const CalibrateOptions& options,
                                               const Candidates& candidates) {
   auto views = capture::choose_spread_views(candidates.views, candidates.size,
                                             static_cast<std::size_t>(options.views));
-  const auto first = capture::calibrate_camera(views, candidates.size);
+  const core::LensKind lens =
+      options.is_fisheye ? core::LensKind::fisheye : core::LensKind::rational;
+  const auto first = capture::calibrate_camera(views, candidates.size, lens);
   if (!first) return std::nullopt;
   for (capture::TargetView& view : views) {
     for (std::size_t i = 0; i < candidates.views.size(); ++i) {
@@ -139,23 +142,29 @@ std::optional<capture::Calibration> calibrate(const CalibrateOptions& options,
       finder.refine(candidates.images[i], first->camera, view);
     }
   }
-  return capture::calibrate_camera(views, candidates.size);
+  return capture::calibrate_camera(views, candidates.size, lens);
 }
 
 std::string describe(const capture::Calibration& found) {
   const auto& lens = found.camera.intrinsics();
   const auto& k = lens.distortion;
+  const std::string terms =
+      lens.lens == core::LensKind::fisheye
+          ? fmt::format("k1 {:.5f}  k2 {:.5f}  k3 {:.5f}  k4 {:.5f} (fisheye)", k[0], k[1], k[2],
+                        k[3])
+          : fmt::format("k1 {:.5f}  k2 {:.5f}  p1 {:.5f}  p2 {:.5f}  k3 {:.5f}", k[0], k[1], k[2],
+                        k[3], k[4]);
   std::string text = fmt::format(
       "focal      {:.2f} {:.2f} px  (+- {:.2f} {:.2f})\n"
       "principal  {:.2f} {:.2f} px  (+- {:.2f} {:.2f})\n"
-      "distortion k1 {:.5f}  k2 {:.5f}  p1 {:.5f}  p2 {:.5f}  k3 {:.5f}\n"
+      "distortion {}\n"
       "error      {:.3f} px RMS over {} views\n"
       "coverage   {:.0f} % of the image area; tilts differ by up to {:.0f} degrees\n\n"
       " frame  points  error px\n",
       lens.focal_px.x(), lens.focal_px.y(), found.focal_sigma_px.x(), found.focal_sigma_px.y(),
       lens.principal_px.x(), lens.principal_px.y(), found.principal_sigma_px.x(),
-      found.principal_sigma_px.y(), k[0], k[1], k[2], k[3], k[4], found.rms_px, found.views.size(),
-      100 * found.coverage, found.tilt_spread_rad * 180 / std::numbers::pi);
+      found.principal_sigma_px.y(), terms, found.rms_px, found.views.size(), 100 * found.coverage,
+      found.tilt_spread_rad * 180 / std::numbers::pi);
   for (const auto& view : found.views) {
     text += fmt::format("{:6} {:7} {:9.3f}\n", view.points.frame_index,
                         view.points.on_target.size(), view.rms_px);
@@ -179,6 +188,7 @@ nlohmann::ordered_json to_json(const capture::Calibration& found, int frames) {
           {"focal_sigma_px", {found.focal_sigma_px.x(), found.focal_sigma_px.y()}},
           {"principal_px", {lens.principal_px.x(), lens.principal_px.y()}},
           {"principal_sigma_px", {found.principal_sigma_px.x(), found.principal_sigma_px.y()}},
+          {"lens", lens.lens == core::LensKind::fisheye ? "fisheye" : "rational"},
           {"distortion", lens.distortion},
           {"rms_px", found.rms_px},
           {"coverage", found.coverage},
@@ -275,6 +285,7 @@ void add_calibrate_command(CommandLine& program, CommandContext& context) {
       "  sheen calibrate /dev/video0 --board grid.yaml -o camera.yaml    for 40 s, from the "
       "camera\n"
       "  sheen calibrate photos/ --chessboard 9x6 --square-mm 25 -o camera.yaml\n"
+      "  sheen calibrate action-camera.mp4 --fisheye --board grid.yaml -o camera.yaml\n"
       "Lock focus and zoom first. Move the target through the whole image, its corners too,\n"
       "near and far, tilted to all sides by 30 degrees and more.");
   command
@@ -287,6 +298,8 @@ void add_calibrate_command(CommandLine& program, CommandContext& context) {
       .required()
       .type("camera.yaml");
   add_target_options(command, *options);
+  command.flag("--fisheye", options->is_fisheye,
+               "The lens is a fisheye, of 120 degrees and more (OpenCV's fisheye, k1 to k4)");
   command.option("--views", options->views, "Images to calibrate from, chosen for spread")
       .range(3, 100)
       .type("N")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "capture/calibration/calibrate_camera.h"
 
+#include "capture/calibration/lens_solution.h"
 #include "core/numerics/median.h"
 
 #include <fmt/format.h>
@@ -124,29 +125,50 @@ core::CameraModel to_camera(const Solution& solution, const ImageSize& size) {
   return core::CameraModel(intrinsics);
 }
 
-Calibration::View measure_view(const TargetView& points, const Solution& solution, std::size_t i) {
+Eigen::Isometry3d pose_of(const cv::Mat& rotation, const cv::Mat& translation) {
+  Eigen::Isometry3d transform = Eigen::Isometry3d::Identity();
+  cv::Matx33d R;
+  cv::Rodrigues(rotation, R);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) transform.linear()(row, column) = R(row, column);
+    transform.translation()[row] = translation.at<double>(row);
+  }
+  return transform;
+}
+
+std::optional<LensSolution> solve_rational(const std::vector<TargetView>& views,
+                                           const ImageSize& size) {
+  const Points points(views);
+  auto found = solve(points, size, 0);
+  // k3 bends the corners of the image at will where no point was seen: only what is sure counts.
+  if (!found ||
+      std::abs(found->distortion.at<double>(4)) < kSurelyNotZero * found->sigmas.at<double>(8)) {
+    found = solve(points, size, cv::CALIB_FIX_K3);
+  }
+  if (!found) return std::nullopt;
+  LensSolution solution;
+  solution.camera = to_camera(*found, size);
+  solution.focal_sigma_px = {found->sigmas.at<double>(0), found->sigmas.at<double>(1)};
+  solution.principal_sigma_px = {found->sigmas.at<double>(2), found->sigmas.at<double>(3)};
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    solution.camera_from_target.push_back(pose_of(found->rotations[i], found->translations[i]));
+  }
+  return solution;
+}
+
+Calibration::View measure_view(const TargetView& points, const LensSolution& solution,
+                               std::size_t i) {
   Calibration::View view;
   view.points = points;
-  cv::Matx33d R;
-  cv::Rodrigues(solution.rotations[i], R);
-  const auto& t = solution.translations[i];
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) {
-      view.camera_from_target.linear()(row, column) = R(row, column);
-    }
-    view.camera_from_target.translation()[row] = t.at<double>(row);
-  }
-  std::vector<cv::Point3d> on_target;
-  for (const Eigen::Vector3d& p : points.on_target) on_target.emplace_back(p.x(), p.y(), p.z());
-  std::vector<cv::Point2d> predicted;
-  cv::projectPoints(on_target, solution.rotations[i], t, solution.K, solution.distortion,
-                    predicted);
+  view.camera_from_target = solution.camera_from_target[i];
+  const Eigen::Vector2d nowhere(1e4, 1e4);
   double sum = 0;
-  for (std::size_t p = 0; p < predicted.size(); ++p) {
-    view.errors_px.push_back(points.in_image[p] - Eigen::Vector2d(predicted[p].x, predicted[p].y));
+  for (std::size_t p = 0; p < points.on_target.size(); ++p) {
+    const auto predicted = solution.camera.project(view.camera_from_target * points.on_target[p]);
+    view.errors_px.push_back(predicted ? points.in_image[p] - *predicted : nowhere);
     sum += view.errors_px.back().squaredNorm();
   }
-  view.rms_px = std::sqrt(sum / static_cast<double>(predicted.size()));
+  view.rms_px = std::sqrt(sum / static_cast<double>(points.on_target.size()));
   return view;
 }
 
@@ -189,21 +211,16 @@ TargetView points_within(const Calibration::View& view, double limit_px) {
 }
 
 std::optional<Calibration> calibrate_once(const std::vector<TargetView>& views,
-                                          const ImageSize& size) {
+                                          const ImageSize& size, core::LensKind lens) {
   if (views.size() < kMinViews) return std::nullopt;
-  const Points points(views);
-  auto solution = solve(points, size, 0);
-  // k3 bends the corners of the image at will where no point was seen: only what is sure counts.
-  if (!solution || std::abs(solution->distortion.at<double>(4)) <
-                       kSurelyNotZero * solution->sigmas.at<double>(8)) {
-    solution = solve(points, size, cv::CALIB_FIX_K3);
-  }
+  const auto solution =
+      lens == core::LensKind::fisheye ? solve_fisheye(views, size) : solve_rational(views, size);
   if (!solution) return std::nullopt;
 
   Calibration result;
-  result.camera = to_camera(*solution, size);
-  result.focal_sigma_px = {solution->sigmas.at<double>(0), solution->sigmas.at<double>(1)};
-  result.principal_sigma_px = {solution->sigmas.at<double>(2), solution->sigmas.at<double>(3)};
+  result.camera = solution->camera;
+  result.focal_sigma_px = solution->focal_sigma_px;
+  result.principal_sigma_px = solution->principal_sigma_px;
   double sum = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
@@ -250,8 +267,8 @@ std::vector<TargetView> choose_spread_views(std::vector<TargetView> views, const
 }
 
 std::optional<Calibration> calibrate_camera(const std::vector<TargetView>& views,
-                                            const ImageSize& size) {
-  const auto first = calibrate_once(views, size);
+                                            const ImageSize& size, core::LensKind lens) {
+  const auto first = calibrate_once(views, size, lens);
   if (!first) return std::nullopt;
 
   // Points far above the rest are half hidden or cut; a view without enough of the others goes.
@@ -270,7 +287,7 @@ std::optional<Calibration> calibrate_camera(const std::vector<TargetView>& views
       dropped.push_back(view.points.frame_index);
     }
   }
-  auto second = calibrate_once(kept, size);
+  auto second = calibrate_once(kept, size, lens);
   if (second) second->dropped = dropped;
   return second;
 }
@@ -286,9 +303,10 @@ std::vector<std::string> find_faults(const Calibration& calibration,
                                  calibration.views.size(), limits.min_views));
   }
   if (calibration.rms_px > limits.max_rms_px) {
-    faults.push_back(
-        fmt::format("the points miss by {:.1f} px, the target is not flat or not the one given",
-                    calibration.rms_px));
+    faults.push_back(fmt::format(
+        "the points miss by {:.1f} px, the target is not flat or not the one given{}",
+        calibration.rms_px,
+        lens.lens == core::LensKind::fisheye ? "" : ", or the lens a fisheye (--fisheye)"));
   }
   if (tilt_deg < limits.min_tilt_spread_deg) {
     faults.push_back(fmt::format(
@@ -313,6 +331,8 @@ std::vector<std::string> find_faults(const Calibration& calibration,
     faults.push_back(
         fmt::format("the principal point is known to {:.0f} px only", side * principal_sigma));
   }
+  // A fisheye's corners may be dark.
+  if (lens.lens == core::LensKind::fisheye) return faults;
   for (const double x : {0.0, lens.width_px - 1.0}) {
     for (const double y : {0.0, lens.height_px - 1.0}) {
       if (calibration.camera.unproject({x, y})) continue;

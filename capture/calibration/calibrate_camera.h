@@ -40,11 +40,12 @@ inline constexpr int kCoverageRows = 8;
 std::vector<TargetView> choose_spread_views(std::vector<TargetView> views, const ImageSize& size,
                                             std::size_t count);
 
-/// OpenCV's calibration with k1 k2 p1 p2 and, where the images tell it from zero, k3. Points
-/// whose error is far above the others' are dropped, and views that lose half of theirs. Nothing
-/// for fewer than three views or when no lens fits.
+/// OpenCV's calibration with k1 k2 p1 p2 and, where the images tell it from zero, k3; of a fisheye
+/// ours (lens_solution.h). Points whose error is far above the others' are dropped, and views that
+/// lose half of theirs. Nothing for fewer than three views or when no lens fits.
 std::optional<Calibration> calibrate_camera(const std::vector<TargetView>& views,
-                                            const ImageSize& size);
+                                            const ImageSize& size,
+                                            core::LensKind lens = core::LensKind::rational);
 
 /// What a calibration must show to be believed.
 struct CalibrationLimits {

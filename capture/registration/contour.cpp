@@ -179,10 +179,13 @@ bool ContourFinder::is_depth_step(const core::CameraModel& camera,
   return outside > depth_m + kStepInDepth * radius_m_;
 }
 
-bool ContourFinder::covers(const core::CameraModel& camera,
-                           const Eigen::Isometry3d& camera_from_object,
-                           const Eigen::Vector2d& pixel) const {
-  return depth_at(camera, camera_from_object.inverse(), pixel) < kInfinity;
+bool ContourFinder::meets(const Eigen::Isometry3d& object_from_camera,
+                          const Eigen::Vector3d& ray) const {
+  const Eigen::Vector3f direction = (object_from_camera.linear() * ray).cast<float>();
+  return rays_
+      .first_hit(object_from_camera.translation().cast<float>(), direction, 0,
+                 std::numeric_limits<float>::infinity())
+      .has_value();
 }
 
 }  // namespace sheen::capture

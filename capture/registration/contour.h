@@ -34,10 +34,9 @@ class ContourFinder {
                                                const Eigen::Isometry3d& camera_from_object,
                                                double spacing_px) const;
 
-  /// Whether the object is seen at a pixel.
-  [[nodiscard]] bool covers(const core::CameraModel& camera,
-                            const Eigen::Isometry3d& camera_from_object,
-                            const Eigen::Vector2d& pixel) const;
+  /// Whether a ray from the camera, in its frame, meets the object.
+  [[nodiscard]] bool meets(const Eigen::Isometry3d& object_from_camera,
+                           const Eigen::Vector3d& ray) const;
 
   [[nodiscard]] const Eigen::AlignedBox3d& bounds() const { return bounds_; }
 

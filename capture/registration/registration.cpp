@@ -138,7 +138,7 @@ class Aligner {
     colours_ = ColourStatistics();
     for (const RegistrationView& view : views_) {
       learn_colours_of(view.image, contours_, camera_, view.camera_from_board * board_from_object,
-                       reach_px(stage, view, board_from_object), colours_);
+                       reach_px(stage, view, board_from_object), kAllPixels, colours_);
     }
     colours_.finish();
   }

@@ -8,9 +8,12 @@ extern "C" {
 #include <libavutil/display.h>
 }
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <exception>
+#include <fstream>
 #include <limits>
 #include <set>
 #include <string>
@@ -20,6 +23,7 @@ namespace {
 
 constexpr double kMostStatedFrames = 1e8;
 constexpr std::int64_t kMostPixels = std::int64_t{1} << 28;
+constexpr std::uint64_t kMostBoxBytes = std::uint64_t{1} << 48;
 constexpr int kBytesAtOnce = 1 << 15;
 constexpr std::size_t kMostPending = 256;  // packets whose picture is not out yet
 constexpr int kMostFaults = 1000;  // in a row, without a packet: the decoder has lost itself
@@ -50,6 +54,38 @@ struct GrowingInput {
   }
 };
 
+/// Whether a file of ISO boxes (MP4, MOV) ends before its index: recorders write that last.
+bool lacks_index(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::uint64_t begin = 0;
+  for (;;) {
+    std::array<unsigned char, 16> header{};
+    file.seekg(static_cast<std::streamoff>(begin));
+    if (!file.read(reinterpret_cast<char*>(header.data()), 8)) return begin > 0;
+    const auto number_at = [&](std::size_t first, std::size_t count) {
+      std::uint64_t number = 0;
+      for (std::size_t i = first; i < first + count; ++i) number = number << 8 | header[i];
+      return number;
+    };
+    const std::string kind(header.begin() + 4, header.begin() + 8);
+    if (kind == "moov" || (begin == 0 && kind != "ftyp")) return false;
+    std::uint64_t size = number_at(0, 4);
+    if (size == 1 && file.read(reinterpret_cast<char*>(header.data()) + 8, 8)) {
+      size = number_at(8, 8);
+    }
+    // 0 is a box up to the end of the file; smaller ones than their header are none.
+    if (size < 8 || size > kMostBoxBytes) return size == 0;
+    begin += size;
+  }
+}
+
+core::Error unreadable(const std::filesystem::path& path) {
+  if (!lacks_index(path)) return undecodable(path);
+  return core::bad_input(path, "the recording was not finished: no index (moov)",
+                         "copy it again if the copy was cut short; else mend it from an intact "
+                         "recording of this camera (untrunc), or record again");
+}
+
 /// `growing` null: the file itself.
 InputPtr open_input(const std::filesystem::path& path, GrowingInput* growing) {
   // Faults of files are told by us, in one line.
@@ -70,7 +106,7 @@ InputPtr open_input(const std::filesystem::path& path, GrowingInput* growing) {
   const int status = avformat_open_input(&context, name.c_str(), nullptr, &options);
   av_dict_free(&options);
   if (growing != nullptr) growing->rethrow();
-  if (status < 0) throw undecodable(path);
+  if (status < 0) throw growing != nullptr ? undecodable(path) : unreadable(path);
   InputPtr input(context);
   if (avformat_find_stream_info(context, nullptr) < 0) throw undecodable(path);
   return input;
@@ -183,7 +219,8 @@ VideoDecoder::Impl::Impl(const std::filesystem::path& video, VideoBytes* bytes)
   codec->max_pixels = kMostPixels;
   codec->thread_count = 0;
   // Of several pictures at once the damage is found now in time, now too late: what is left out
-  // would be up to chance.
+  // would be up to chance. Slices at once are safe: two threads cost 10 % more CPU than one where a
+  // picture has four (H.264, 1440 x 1080: 9.4 for 8.5 ms), nothing where it has one (8.6 for 8.6).
   codec->thread_type = FF_THREAD_SLICE;
   if (avcodec_open2(codec.get(), decoder, nullptr) < 0) throw undecodable(path);
   facts.size = {stream.codecpar->width, stream.codecpar->height};

@@ -14,7 +14,7 @@ namespace sheen::pipeline {
 namespace {
 
 constexpr std::size_t kMostGrains = 16, kGrainSpacing = 4;
-constexpr int kGrainStep_px = 3;
+constexpr int kLeastGrainStep_px = 3, kGrainPixels = 6000;
 // Chosen on bench/stress with seed 1 and the recordings named in docs/stability-sessions.md.
 constexpr double kGrainy = 20;   // grey levels: as much as shades differ by
 constexpr double kUnclear = 10;  // above it outlines and colours tell nothing sure
@@ -59,9 +59,12 @@ void CaptureEvidence::look_at(const capture::Frame& frame,
 /// not move: the difference of two Laplacians takes out whatever is linear.
 void CaptureEvidence::measure_grain(const cv::Mat& image) {
   constexpr double whole = 6;  // square root of the sum of the mask's squares
+  const int step_px =
+      std::max(kLeastGrainStep_px,
+               static_cast<int>(std::sqrt(static_cast<double>(image.total()) / kGrainPixels)));
   std::vector<double> sizes;
-  for (int y = 1; y + 1 < image.rows; y += kGrainStep_px) {
-    for (int x = 1; x + 1 < image.cols; x += kGrainStep_px) {
+  for (int y = 1; y + 1 < image.rows; y += step_px) {
+    for (int x = 1; x + 1 < image.cols; x += step_px) {
       const auto green = [&](int row, int column) {
         return static_cast<int>(image.at<cv::Vec3b>(y + row, x + column)[1]);
       };

@@ -15,7 +15,7 @@
 namespace sheen::pipeline {
 namespace {
 
-constexpr std::size_t kMostCornerViews = 24, kCornerSpacing = 4;
+constexpr std::size_t kMostCornerViews = 12, kCornerSpacing = 4;
 constexpr std::size_t kFewestCorners = 12;
 constexpr int kFewestNumbers = 600;  // below it a pattern of three unknowns fits noise
 // Chosen on bench/stress with seed 1 and the recordings named in docs/stability-sessions.md: what a

@@ -31,6 +31,8 @@ constexpr double kSeenDrift = 0.8;   // stops between the darkest and brightest 
 constexpr double kClearDrift = 10;   // times what patches of one frame disagree by
 constexpr double kSeenBlob = 0.025;  // of a frame's samples
 constexpr std::size_t kFewestHidden = 3;
+// Where more suddenly has another colour, poses or mesh are off: what is seen is something else.
+constexpr double kFits = 0.1;
 constexpr double kNothingFits = 0.28;
 
 float stops_of(float srgb) {
@@ -259,16 +261,18 @@ LightEvidence::Verdict LightEvidence::verdict() const {
   if (lights.size() < kFewestFrames) return verdict;
   std::vector<double> exposure, balance, disagreement, odd;
   for (const FrameLight& light : lights) {
+    odd.push_back(light.odd_share);
+    if (light.blob_share > kSeenBlob) verdict.hidden_frames.push_back(light.frame_index);
+    if (light.odd_share > kFits) continue;
     exposure.push_back(light.exposure);
     balance.push_back(light.balance);
     disagreement.push_back(light.disagreement);
-    odd.push_back(light.odd_share);
-    if (light.blob_share > kSeenBlob) verdict.hidden_frames.push_back(light.frame_index);
   }
+  verdict.odd_share = core::upper_median(odd);
+  if (exposure.size() < kFewestFrames) return verdict;
   verdict.exposure_stops = range(exposure);
   verdict.balance_stops = range(balance);
   verdict.disagreement_stops = core::upper_median(disagreement);
-  verdict.odd_share = core::upper_median(odd);
   return verdict;
 }
 

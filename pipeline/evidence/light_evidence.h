@@ -29,9 +29,11 @@ class LightEvidence {
 
   /// All frames together; zeros where there are too few.
   struct Verdict {
-    double exposure_stops = 0;  ///< range over the frames, without the extreme twentieths
+    /// These three of the frames in which nearly every patch fits: range, without the extreme
+    /// twentieths; the same; usual disagreement within a frame.
+    double exposure_stops = 0;
     double balance_stops = 0;
-    double disagreement_stops = 0;   ///< usual, within a frame
+    double disagreement_stops = 0;
     double odd_share = 0;            ///< of the usual frame
     std::vector<int> hidden_frames;  ///< where something hides part of the object
   };

@@ -17,8 +17,9 @@
 namespace sheen::pipeline {
 namespace {
 
-constexpr std::size_t kMostOutlineViews = 24, kOutlineSpacing = 4;
-constexpr double kReach = 0.12;  // of the object's radius: how far off an outline may be
+constexpr std::size_t kMostOutlineViews = 16, kOutlineSpacing = 4;
+constexpr int kColourPixels = 3000;  // from which a view's colours are learnt
+constexpr double kReach = 0.12;      // of the object's radius: how far off an outline may be
 constexpr double kLeastReach_px = 6, kMostReach_px = 40;
 constexpr double kFineReach_px = 3;
 constexpr double kPointsAcross = 32;  // on the diameter
@@ -95,7 +96,8 @@ void OutlineEvidence::look_at(int frame_index, const cv::Mat& image,
 
   // Colours of the object and of what is round it, in this image.
   capture::ColourStatistics colours;
-  capture::learn_colours_of(image, contours_, camera, camera_from_object, reach_px, colours);
+  capture::learn_colours_of(image, contours_, camera, camera_from_object, reach_px, kColourPixels,
+                            colours);
   colours.finish();
 
   // Where do they change, and where exactly is the edge there?

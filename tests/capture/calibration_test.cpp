@@ -120,6 +120,78 @@ TEST(Calibration, LeavesOutAViewThatIsFarWorse) {
   EXPECT_LT((found->camera.intrinsics().focal_px - truth.intrinsics().focal_px).norm(), 2);
 }
 
+/// A fisheye of 160 degrees along the longer side.
+core::CameraModel fisheye_camera() {
+  core::CameraModel::Intrinsics intrinsics;
+  intrinsics.width_px = kSize.width_px;
+  intrinsics.height_px = kSize.height_px;
+  intrinsics.focal_px = {455, 456};
+  intrinsics.principal_px = {644, 355};
+  intrinsics.distortion = {0.03, -0.012, 0.004, 0, 0, 0, 0, 0};
+  intrinsics.lens = core::LensKind::fisheye;
+  return core::CameraModel(intrinsics);
+}
+
+std::vector<TargetView> fisheye_views(const core::CameraModel& camera, double noise_px,
+                                      unsigned seed) {
+  const Board board = make_grid_board("tag36h11", 8, 6, 0.03, 0.0375);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0, noise_px);
+  std::vector<TargetView> views;
+  for (int i = 0; i < 14; ++i) {
+    const auto pose = look_at_board(0.09 + 0.02 * (i % 4), (50 + 13 * (i % 3)) * kDegree,
+                                    2 * std::numbers::pi * i * 0.381966);
+    TargetView& view = views.emplace_back();
+    view.frame_index = i;
+    for (const auto& [id, tag] : board.tags) {
+      for (const Eigen::Vector3d& corner : tag.corners_in_board()) {
+        const auto pixel = camera.project(pose * corner);
+        if (!pixel || (pixel->array() < 0).any() || pixel->x() > kSize.width_px - 1 ||
+            pixel->y() > kSize.height_px - 1) {
+          continue;
+        }
+        view.on_target.push_back(corner);
+        view.in_image.emplace_back(*pixel + Eigen::Vector2d(noise(random), noise(random)));
+      }
+    }
+  }
+  return views;
+}
+
+TEST(FisheyeCalibration, FindsTheLensOfExactPoints) {
+  const auto truth = fisheye_camera();
+  const auto found = calibrate_camera(fisheye_views(truth, 0, 1), kSize, core::LensKind::fisheye);
+  ASSERT_TRUE(found);
+  EXPECT_LT(found->rms_px, 1e-3);
+  const auto& a = found->camera.intrinsics();
+  const auto& b = truth.intrinsics();
+  EXPECT_EQ(a.lens, core::LensKind::fisheye);
+  EXPECT_LT((a.focal_px - b.focal_px).norm(), 0.01);
+  EXPECT_LT((a.principal_px - b.principal_px).norm(), 0.01);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(a.distortion[i], b.distortion[i], 1e-4);
+  EXPECT_TRUE(find_faults(*found, {}).empty());
+}
+
+TEST(FisheyeCalibration, StaysWithinWhatItSaysOfItsErrors) {
+  // As of the other lenses: four standard deviations; 0.2 px per coordinate.
+  const auto truth = fisheye_camera();
+  const auto found = calibrate_camera(fisheye_views(truth, 0.2, 2), kSize, core::LensKind::fisheye);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->rms_px, 0.2 * std::numbers::sqrt2, 0.02);
+  const auto& a = found->camera.intrinsics();
+  const auto& b = truth.intrinsics();
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_LT(std::abs(a.focal_px[i] - b.focal_px[i]), 4 * found->focal_sigma_px[i]);
+    EXPECT_LT(std::abs(a.principal_px[i] - b.principal_px[i]), 4 * found->principal_sigma_px[i]);
+  }
+  EXPECT_LT(found->focal_sigma_px.maxCoeff(), 2);
+}
+
+TEST(FisheyeCalibration, NoOtherLensFits) {
+  const auto found = calibrate_camera(fisheye_views(fisheye_camera(), 0.2, 2), kSize);
+  EXPECT_TRUE(!found || found->rms_px > 2 * 0.2 * std::numbers::sqrt2);
+}
+
 /// Whether one of the faults contains a word.
 bool has_fault(const std::vector<std::string>& faults, const std::string& word) {
   return std::any_of(faults.begin(), faults.end(), [&](const std::string& fault) {

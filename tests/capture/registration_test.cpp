@@ -222,8 +222,11 @@ TEST(Contour, OfABallIsTheCircleOfItsTangents) {
     EXPECT_NEAR(from_centre.norm(), circle_px, 0.6);
     EXPECT_GT(point.outward.dot(from_centre.normalized()), 0.98);
   }
-  EXPECT_TRUE(contours.covers(camera, camera_from_object, {319.5, 239.5}));
-  EXPECT_FALSE(contours.covers(camera, camera_from_object, {319.5 + 1.1 * circle_px, 239.5}));
+  const auto meets = [&](const Eigen::Vector2d& pixel) {
+    return contours.meets(camera_from_object.inverse(), camera.unproject(pixel).value());
+  };
+  EXPECT_TRUE(meets({319.5, 239.5}));
+  EXPECT_FALSE(meets({319.5 + 1.1 * circle_px, 239.5}));
 }
 
 TEST(Placement, PairsGiveTheMotionBack) {

@@ -261,6 +261,25 @@ TEST(VideoFiles, NamesWithColonsAndPerCentsAreNames) {
   EXPECT_EQ(all_frames(*open_video(folder / name, kVideoSize, {}, std::nullopt)).size(), 3u);
 }
 
+// Cut where the index begins, and in the middle of the images before it: what a recorder leaves
+// that was switched off.
+TEST(VideoFiles, AnUnfinishedRecordingIsCalledOne) {
+  const TemporaryFolder folder;
+  VideoSpec spec = numbered(4);
+  spec.codec = AV_CODEC_ID_MPEG4;
+  spec.format = AV_PIX_FMT_YUV420P;
+  spec.states_colours = false;
+  write_video(folder / "whole.mp4", spec);
+  const std::string whole = tests::read_file(folder / "whole.mp4");
+  const std::size_t index = whole.find("moov") - 4;
+  ASSERT_LT(whole.find("mdat"), index);
+  for (const std::size_t size : {index, (whole.find("mdat") + index) / 2}) {
+    const auto path = folder.write("cut.mp4", whole.substr(0, size));
+    expect_bad_input([&] { (void)open_video(path, kVideoSize, {}, std::nullopt); }, "cut.mp4",
+                     "not finished", "moov");
+  }
+}
+
 TEST(VideoFiles, EveryFileCutShortIsReadOrRefused) {
   const TemporaryFolder folder;
   write_video(folder / "whole.mkv", numbered(4));
