@@ -89,7 +89,7 @@ const ModelUpdate& DetailFitter::integrate(const core::Observation& observation)
   texel_means_.integrate(observation, raster_, model_.texture());
   texture_sums_.integrate(observation, raster_);
   samples_ = observation.samples;
-  vertex_means_.average(texel_means_.corners(), samples_);
+  vertex_means_.average(raster_, texel_means_.corners(), samples_);
   patch_means_.integrate(samples_);
   store_offsets(patches_->PatchFitter::integrate(samples_).elements);
   for (const std::uint32_t page : texel_means_.touched_pages()) {

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Compiled with options of its own (fitting/CMakeLists.txt): nothing may be fused, so that every
-// instruction set gives the same bits; square roots set no errno.
 #include "fitting/sparse/columns.h"
+
+#include "fitting/every_processor.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-
-// Copies are chosen while the program is loaded, when ThreadSanitizer has not started yet.
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_THREAD__)
-#define SHEEN_FOR_EVERY_PROCESSOR __attribute__((target_clones("arch=x86-64-v3", "default")))
-#else
-#define SHEEN_FOR_EVERY_PROCESSOR
-#endif
-#define SHEEN_INLINE __attribute__((always_inline)) inline
 
 namespace sheen::fitting::sparse::columns {
 namespace {
