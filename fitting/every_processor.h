@@ -12,3 +12,5 @@
 #define SHEEN_FOR_EVERY_PROCESSOR
 #endif
 #define SHEEN_INLINE __attribute__((always_inline)) inline
+/// Behind the parameters of a lambda: the same for it.
+#define SHEEN_INLINE_LAMBDA __attribute__((always_inline))

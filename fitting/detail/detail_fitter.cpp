@@ -52,7 +52,7 @@ class DetailFitter final : public Fitter {
             sparse::make_sparse_fitter(core::vertex_neighbours(mesh), options.patches, threads)),
         model_(mesh, atlas_of(mesh, options)),
         raster_(mesh, threads),
-        texel_means_(mesh, model_.texture().atlas(), threads),
+        texel_means_(mesh, model_.texture(), threads),
         texture_sums_(mesh, model_.texture().atlas(), threads),
         vertex_means_(mesh, threads),
         patch_means_(mesh.positions.size()) {}

@@ -43,17 +43,28 @@ SHEEN_INLINE Texel stored(const WeightedMean& mean) {
 
 }  // namespace
 
-TexelMeans::TexelMeans(const core::Mesh& mesh, const core::Atlas& atlas, int threads)
+TexelMeans::TexelMeans(const core::Mesh& mesh, const SurfaceTexture& texture, int threads)
     : mesh_(mesh),
       threads_(threads),
-      surface_(atlas),
+      surface_(texture.atlas()),
       means_(surface_.size()),
-      corners_(mesh.triangles.size()) {}
+      corners_(mesh.triangles.size()),
+      pages_before_{0},
+      page_is_touched_(texture.page_count()) {
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (const SurfaceTexel& texel : surface_.of(t)) {
+      const auto page = static_cast<std::uint32_t>(texture.page_of(texel.texel_idx));
+      const auto first = pages_.begin() + static_cast<std::ptrdiff_t>(pages_before_[t]);
+      if (std::find(first, pages_.end(), page) == pages_.end()) pages_.push_back(page);
+    }
+    pages_before_.push_back(static_cast<std::uint32_t>(pages_.size()));
+  }
+}
 
 // A texel belongs to one triangle: no two threads add to the same one.
 void TexelMeans::integrate(const core::Observation& observation, const ViewRaster& raster,
                            SurfaceTexture& texture) {
-  page_is_touched_.assign(texture.page_count(), 0);
+  std::ranges::fill(page_is_touched_, 0);
   core::parallel_for(mesh_.triangles.size(), threads_, [&](std::size_t begin, std::size_t end) {
     integrate_triangles(begin, end, observation, raster, texture);
   });
@@ -79,7 +90,7 @@ void TexelMeans::integrate_triangles(std::size_t begin, std::size_t end,
       const FourWeights weight = weights_of_four(&texels[first]);
       const FourPlaces places = raster.places(triangle, weight);
       const unsigned all = bits_below(texels.size() - first);
-      for_bits(places.seen & all, [&](std::size_t i) {
+      for_bits(places.seen & all, [&](std::size_t i) SHEEN_INLINE_LAMBDA {
         WeightedMean& mean = means[first + i];
         Four colour = colour_at(image, places.x_px[i], places.y_px[i]) * gain;
         colour = colour > 255.0f ? Four{255, 255, 255, 255} : colour;
@@ -91,19 +102,15 @@ void TexelMeans::integrate_triangles(std::size_t begin, std::size_t end,
                [&](std::size_t i) { gaps = gaps || means[first + i].weight == 0; });
     }
     corners_[t] = corners;
-    if (!corners.is_empty()) touch(t, texture);
+    if (!corners.is_empty()) touch_pages(t);
     if (gaps) fill_gaps(t, texture);
   }
 }
 
 // Triangles of several threads may share a page.
-void TexelMeans::touch(std::size_t triangle_idx, const SurfaceTexture& texture) {
-  std::size_t last = page_is_touched_.size();
-  for (const SurfaceTexel& texel : surface_.of(triangle_idx)) {
-    const std::size_t page = texture.page_of(texel.texel_idx);
-    if (page == last) continue;
-    std::atomic_ref(page_is_touched_[page]).store(1, std::memory_order_relaxed);
-    last = page;
+void TexelMeans::touch_pages(std::size_t triangle_idx) {
+  for (std::size_t i = pages_before_[triangle_idx]; i < pages_before_[triangle_idx + 1]; ++i) {
+    std::atomic_ref(page_is_touched_[pages_[i]]).store(1, std::memory_order_relaxed);
   }
 }
 

@@ -38,8 +38,8 @@ struct CornerColours {
 /// The mean colour of every texel over all views so far.
 class TexelMeans {
  public:
-  /// `mesh` outlives it; `atlas` is one of its.
-  TexelMeans(const core::Mesh& mesh, const core::Atlas& atlas, int threads);
+  /// `mesh` outlives it; `texture` is one of its.
+  TexelMeans(const core::Mesh& mesh, const SurfaceTexture& texture, int threads);
 
   /// Adds a view, and writes the means of what it shows into `texture`. The same on any number of
   /// threads.
@@ -61,13 +61,14 @@ class TexelMeans {
   void integrate_triangles(std::size_t begin, std::size_t end, const core::Observation& observation,
                            const ViewRaster& raster, SurfaceTexture& texture);
   void fill_gaps(std::size_t triangle_idx, SurfaceTexture& texture);
-  void touch(std::size_t triangle_idx, const SurfaceTexture& texture);
+  void touch_pages(std::size_t triangle_idx);
 
   const core::Mesh& mesh_;
   int threads_;
   SurfaceTexels surface_;
   std::vector<WeightedMean> means_;  ///< triangle by triangle: memory is walked in its order
   std::vector<CornerColours> corners_;
+  std::vector<std::uint32_t> pages_before_, pages_;  ///< those that hold a triangle's texels
   std::vector<std::uint8_t> page_is_touched_;
 };
 

@@ -108,14 +108,14 @@ void TextureSums::integrate_triangles(const Triangles& triangles,
     const Eigen::Vector2f a = atlas_.place(t, 0);
     const Eigen::Vector2f b = atlas_.place(t, 1);
     const Eigen::Vector2f c = atlas_.place(t, 2);
-    raster.for_pixels(raster.triangle(t), [&](const FourPixels& pixels) {
+    raster.for_pixels(raster.triangle(t), [&](const FourPixels& pixels) SHEEN_INLINE_LAMBDA {
       const auto& [at_a, at_b, at_c] = pixels.weight;
       const FourReadings readings =
           readings_at(at_a * a.x() + at_b * b.x() + at_c * c.x(),
                       at_a * a.y() + at_b * b.y() + at_c * c.y(), pixels.cosine);
       const std::uint8_t* const bgr = image + static_cast<std::size_t>(pixels.y_px) * row +
                                       3 * static_cast<std::size_t>(pixels.x_px);
-      for_bits(pixels.shown, [&](std::size_t k) {
+      for_bits(pixels.shown, [&](std::size_t k) SHEEN_INLINE_LAMBDA {
         add_pixel(grid, readings, k,
                   Four{1, corrected_[bgr[3 * k + 2]], corrected_[bgr[3 * k + 1]],
                        corrected_[bgr[3 * k]]});

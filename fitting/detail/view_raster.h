@@ -130,7 +130,7 @@ SHEEN_INLINE FourPlaces ViewRaster::places(const SeenTriangle& triangle,
   const Four limit = (1.0f + rise * step_) * inverse_depth;
   const FourInts x = as_ints(within ? places.x_px : Four{});
   const FourInts y = as_ints(within ? places.y_px : Four{});
-  for_bits(bits_of(within), [&](std::size_t i) {
+  for_bits(bits_of(within), [&](std::size_t i) SHEEN_INLINE_LAMBDA {
     const bool seen = place_limit_[at(x[i], y[i])] <= limit[i];
     places.seen |= static_cast<unsigned>(seen) << i;
   });
