@@ -61,15 +61,6 @@ TexelMeans::TexelMeans(const core::Mesh& mesh, const SurfaceTexture& texture, in
   }
 }
 
-// A texel belongs to one triangle: no two threads add to the same one.
-void TexelMeans::integrate(const core::Observation& observation, const ViewRaster& raster,
-                           SurfaceTexture& texture) {
-  std::ranges::fill(page_is_touched_, 0);
-  core::parallel_for(mesh_.triangles.size(), threads_, [&](std::size_t begin, std::size_t end) {
-    integrate_triangles(begin, end, observation, raster, texture);
-  });
-}
-
 SHEEN_FOR_EVERY_PROCESSOR
 void TexelMeans::integrate_triangles(std::size_t begin, std::size_t end,
                                      const core::Observation& observation, const ViewRaster& raster,
@@ -105,6 +96,15 @@ void TexelMeans::integrate_triangles(std::size_t begin, std::size_t end,
     if (!corners.is_empty()) touch_pages(t);
     if (gaps) fill_gaps(t, texture);
   }
+}
+
+// A texel belongs to one triangle: no two threads add to the same one.
+void TexelMeans::integrate(const core::Observation& observation, const ViewRaster& raster,
+                           SurfaceTexture& texture) {
+  std::ranges::fill(page_is_touched_, 0);
+  core::parallel_for(mesh_.triangles.size(), threads_, [&](std::size_t begin, std::size_t end) {
+    integrate_triangles(begin, end, observation, raster, texture);
+  });
 }
 
 // Triangles of several threads may share a page.

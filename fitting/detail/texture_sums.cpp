@@ -54,24 +54,6 @@ void TextureSums::sort_into_bands() {
   }
 }
 
-// Bands of equal parity share no row, so each may be worked on by another thread.
-void TextureSums::integrate(const core::Observation& observation, const ViewRaster& raster) {
-  for (std::size_t value = 0; value < corrected_.size(); ++value) {
-    corrected_[value] = static_cast<float>(
-        std::clamp(std::lround(static_cast<double>(value) / observation.gain), 0L, 255L));
-  }
-  for (const std::size_t parity : {std::size_t{0}, std::size_t{1}}) {
-    core::parallel_for((bands_.size() + 1 - parity) / 2, threads_,
-                       [&](std::size_t begin, std::size_t end) {
-                         for (std::size_t i = begin; i < end; ++i) {
-                           integrate_triangles(bands_[2 * i + parity], observation, raster);
-                         }
-                       },
-                       1);
-  }
-  integrate_triangles(high_, observation, raster);
-}
-
 // Without this a third of the time is spent waiting for the memory.
 void TextureSums::prefetch(std::uint32_t triangle_idx) const {
   const Eigen::Vector2f a = atlas_.place(triangle_idx, 0);
@@ -122,6 +104,24 @@ void TextureSums::integrate_triangles(const Triangles& triangles,
       });
     });
   }
+}
+
+// Bands of equal parity share no row, so each may be worked on by another thread.
+void TextureSums::integrate(const core::Observation& observation, const ViewRaster& raster) {
+  for (std::size_t value = 0; value < corrected_.size(); ++value) {
+    corrected_[value] = static_cast<float>(
+        std::clamp(std::lround(static_cast<double>(value) / observation.gain), 0L, 255L));
+  }
+  for (const std::size_t parity : {std::size_t{0}, std::size_t{1}}) {
+    core::parallel_for((bands_.size() + 1 - parity) / 2, threads_,
+                       [&](std::size_t begin, std::size_t end) {
+                         for (std::size_t i = begin; i < end; ++i) {
+                           integrate_triangles(bands_[2 * i + parity], observation, raster);
+                         }
+                       },
+                       1);
+  }
+  integrate_triangles(high_, observation, raster);
 }
 
 }  // namespace sheen::fitting::detail
