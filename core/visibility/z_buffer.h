@@ -32,10 +32,12 @@ class ZBuffer {
   [[nodiscard]] const std::vector<LargeTriangle>& large_triangles() const { return large_; }
 
   /// Inverse depth at a pixel of the image within the box, 1/m; 0 where nothing is.
-  [[nodiscard]] float at(int x_px, int y_px) const {
+  [[nodiscard]] float at(int x_px, int y_px) const { return *from(x_px, y_px); }
+  /// The same, followed by those to the right of it.
+  [[nodiscard]] const float* from(int x_px, int y_px) const {
     const auto x = static_cast<std::size_t>(x_px - static_cast<int>(left_px_));
     const auto y = static_cast<std::size_t>(y_px - static_cast<int>(top_px_));
-    return maps_.front().data()->inverse_depth[y * row() + x];
+    return maps_.front().data()->inverse_depth + y * row() + x;
   }
 
   /// Least and greatest inverse depth of the four pixels around a position within the box.

@@ -52,7 +52,7 @@ class DetailFitter final : public Fitter {
             sparse::make_sparse_fitter(core::vertex_neighbours(mesh), options.patches, threads)),
         model_(mesh, atlas_of(mesh, options)),
         raster_(mesh, threads),
-        texel_means_(mesh, model_.texture().atlas(), threads),
+        texel_means_(mesh, model_.texture(), threads),
         texture_sums_(mesh, model_.texture().atlas(), threads),
         vertex_means_(mesh, threads),
         patch_means_(mesh.positions.size()) {}
@@ -89,7 +89,7 @@ const ModelUpdate& DetailFitter::integrate(const core::Observation& observation)
   texel_means_.integrate(observation, raster_, model_.texture());
   texture_sums_.integrate(observation, raster_);
   samples_ = observation.samples;
-  vertex_means_.average(texel_means_.corners(), samples_);
+  vertex_means_.average(raster_, texel_means_.corners(), samples_);
   patch_means_.integrate(samples_);
   store_offsets(patches_->PatchFitter::integrate(samples_).elements);
   for (const std::uint32_t page : texel_means_.touched_pages()) {

@@ -81,7 +81,7 @@ SurfaceTexels::SurfaceTexels(const core::Atlas& atlas) : offsets_(atlas.corners.
     if (one.triangle_idx != kNobody) ++offsets_[one.triangle_idx + 1];
   }
   for (std::size_t i = 1; i < offsets_.size(); ++i) offsets_[i] += offsets_[i - 1];
-  texels_.resize(offsets_.back());
+  texels_.resize(offsets_.back() + 3);
   std::vector<std::uint32_t> next(offsets_.begin(), offsets_.end() - 1);
   for (std::uint32_t i = 0; i < nearest.size(); ++i) {
     const Nearest& one = nearest[i];

@@ -3,11 +3,8 @@
 
 #include "fitting/detail/four.h"
 
-#include <Eigen/Core>
-
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -48,48 +45,72 @@ struct TexelGrid {
   std::size_t width;
 };
 
-/// Adds qb times `first` to the first four sums, times `last` to the others. Products are below
-/// 2^24 and so exact in floats.
-inline void add_products(float qb, const Four& first, const Four& last, TexelSums& texel) {
-  static_assert(offsetof(TexelSums, below_left) == sizeof(FourCounts));
-  std::array<FourCounts, 2> sums;
-  std::memcpy(&sums, &texel, sizeof(sums));
-  sums[0] += as_counts(qb * first);
-  sums[1] += as_counts(qb * last);
-  std::memcpy(static_cast<void*>(&texel), &sums, sizeof(sums));
-}
+/// Where four pixels read a texture and how much they count, in the units of TexelSums.
+struct FourReadings {
+  FourInts x, y;  ///< from the first texel's centre
+  Four q;
+};
 
-/// Adds a pixel of colour `rgb` (0 to 255 each) that sees the texture at `place` (texels, at least
-/// one away from the border) under this cosine. Does nothing where a texel around is full.
-inline void add_pixel(const TexelGrid& grid, const Eigen::Vector2f& place, float cosine,
-                      const std::array<std::uint32_t, 3>& rgb) {
+/// Places on the texture, texels, at least one away from the border; the cosines are positive.
+SHEEN_INLINE FourReadings readings_at(const Four& x, const Four& y, const Four& cosine) {
   // Centres of texels lie at halves.
   constexpr auto steps = static_cast<float>(kPlaceSteps);
-  const auto x = static_cast<std::uint32_t>((place.x() - 0.5f) * steps + 0.5f);
-  const auto y = static_cast<std::uint32_t>((place.y() - 0.5f) * steps + 0.5f);
-  const std::uint32_t right = x % kPlaceSteps;
-  const std::uint32_t below = y % kPlaceSteps;
+  const Four q =
+      greater(cosine * cosine * static_cast<float>(kCosineUnits) + 0.5f, Four{1, 1, 1, 1});
+  return {as_ints((x - 0.5f) * steps + 0.5f), as_ints((y - 0.5f) * steps + 0.5f),
+          as_four(as_ints(q))};
+}
+
+/// What a pixel adds to the four texels around its place, left before right, upper before lower: to
+/// the first four sums q times `first`, to the others q times `last` times its 1, R, G, B.
+struct alignas(64) PixelProducts {
+  float first[4][4];
+  float last[4][4];
+};
+
+/// By the place within the texel: row * kPlaceSteps + column.
+inline constexpr auto kPixelProducts = [] {
+  std::array<PixelProducts, std::size_t{kPlaceSteps} * kPlaceSteps> products{};
+  for (int place = 0; place < kPlaceSteps * kPlaceSteps; ++place) {
+    const int right = place % kPlaceSteps;
+    const int below = place / kPlaceSteps;
+    const auto b0 = static_cast<float>((kPlaceSteps - right) * (kPlaceSteps - below));
+    const auto b1 = static_cast<float>(right * (kPlaceSteps - below));
+    const auto b2 = static_cast<float>((kPlaceSteps - right) * below);
+    const auto b3 = static_cast<float>(right * below);
+    products[static_cast<std::size_t>(place)] = {
+        {{b0, b0 * b1, b0 * b2, b0 * b3}, {b1, 0, b1 * b3, 0}, {b2, b2 * b3, 0, 0}, {b3, 0, 0, 0}},
+        {{0, b0, b0, b0}, {b1 * b2, b1, b1, b1}, {0, b2, b2, b2}, {0, b3, b3, b3}}};
+  }
+  return products;
+}();
+
+/// Adds pixel `i` of `readings`, of colour `one_rgb` (1, and whole numbers from 0 to 255). Does
+/// nothing where a texel around is full. Products are below 2^24 and so exact in floats.
+SHEEN_INLINE void add_pixel(const TexelGrid& grid, const FourReadings& readings, std::size_t i,
+                            const Four& one_rgb) {
+  static_assert(offsetof(TexelSums, below_left) == sizeof(FourCounts));
+  const auto x = static_cast<std::size_t>(readings.x[i]);
+  const auto y = static_cast<std::size_t>(readings.y[i]);
   TexelSums* const upper = grid.texels + (y / kPlaceSteps) * grid.width + x / kPlaceSteps;
   TexelSums* const lower = upper + grid.width;
   if (std::max(std::max(upper[0].weight, upper[1].weight),
                std::max(lower[0].weight, lower[1].weight)) > kFullWeight) {
     return;
   }
-  const std::uint32_t b0 = (kPlaceSteps - right) * (kPlaceSteps - below);
-  const std::uint32_t b1 = right * (kPlaceSteps - below);
-  const std::uint32_t b2 = (kPlaceSteps - right) * below;
-  const std::uint32_t b3 = right * below;
-  const auto q = static_cast<std::uint32_t>(
-      std::max(1.0f, cosine * cosine * static_cast<float>(kCosineUnits) + 0.5f));
-  const auto f = [](std::uint32_t v) { return static_cast<float>(v); };
-  const float r = f(rgb[0]);
-  const float g = f(rgb[1]);
-  const float b = f(rgb[2]);
-  const Four light{0, r, g, b};
-  add_products(f(q * b0), Four{1, f(b1), f(b2), f(b3)}, light, upper[0]);
-  add_products(f(q * b1), Four{1, 0, f(b3), 0}, Four{f(b2), r, g, b}, upper[1]);
-  add_products(f(q * b2), Four{1, f(b3), 0, 0}, light, lower[0]);
-  add_products(f(q * b3), Four{1, 0, 0, 0}, light, lower[1]);
+  const PixelProducts& products = kPixelProducts[(y % kPlaceSteps) * kPlaceSteps + x % kPlaceSteps];
+  const Four light = readings.q[i] * one_rgb;
+  const auto add = [&](std::size_t corner, TexelSums& texel) {
+    std::array<FourCounts, 2> sums;
+    std::memcpy(&sums, &texel, sizeof(sums));
+    sums[0] += as_counts(readings.q[i] * load_four(products.first[corner]));
+    sums[1] += as_counts(light * load_four(products.last[corner]));
+    std::memcpy(static_cast<void*>(&texel), &sums, sizeof(sums));
+  };
+  add(0, upper[0]);
+  add(1, upper[1]);
+  add(2, lower[0]);
+  add(3, lower[1]);
 }
 
 }  // namespace sheen::fitting::detail

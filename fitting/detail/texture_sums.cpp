@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace sheen::fitting::detail {
 namespace {
@@ -55,24 +54,6 @@ void TextureSums::sort_into_bands() {
   }
 }
 
-// Bands of equal parity share no row, so each may be worked on by another thread.
-void TextureSums::integrate(const core::Observation& observation, const ViewRaster& raster) {
-  for (std::size_t value = 0; value < corrected_.size(); ++value) {
-    corrected_[value] = static_cast<std::uint8_t>(
-        std::clamp(std::lround(static_cast<double>(value) / observation.gain), 0L, 255L));
-  }
-  for (const std::size_t parity : {std::size_t{0}, std::size_t{1}}) {
-    core::parallel_for((bands_.size() + 1 - parity) / 2, threads_,
-                       [&](std::size_t begin, std::size_t end) {
-                         for (std::size_t i = begin; i < end; ++i) {
-                           integrate_triangles(bands_[2 * i + parity], observation, raster);
-                         }
-                       },
-                       1);
-  }
-  integrate_triangles(high_, observation, raster);
-}
-
 // Without this a third of the time is spent waiting for the memory.
 void TextureSums::prefetch(std::uint32_t triangle_idx) const {
   const Eigen::Vector2f a = atlas_.place(triangle_idx, 0);
@@ -91,29 +72,56 @@ void TextureSums::prefetch(std::uint32_t triangle_idx) const {
   }
 }
 
+SHEEN_FOR_EVERY_PROCESSOR
 void TextureSums::integrate_triangles(const Triangles& triangles,
                                       const core::Observation& observation,
                                       const ViewRaster& raster) {
   constexpr std::size_t ahead = 6;  // triangles
   const TexelGrid grid{texels_.data(), static_cast<std::size_t>(atlas_.width)};
+  const std::uint8_t* const image = observation.image.data;
+  const std::size_t row = observation.image.step[0];
   for (std::size_t i = 0; i < triangles.size(); ++i) {
     if (i + ahead < triangles.size() && raster.is_front(triangles[i + ahead])) {
       raster.prefetch(triangles[i + ahead]);
       prefetch(triangles[i + ahead]);
     }
     const std::uint32_t t = triangles[i];
-    const std::optional<SeenTriangle> triangle = raster.triangle(t);
-    if (!triangle) continue;
+    if (!raster.is_front(t)) continue;
     const Eigen::Vector2f a = atlas_.place(t, 0);
     const Eigen::Vector2f b = atlas_.place(t, 1);
     const Eigen::Vector2f c = atlas_.place(t, 2);
-    raster.for_each_pixel(*triangle, [&](const SurfacePixel& pixel) {
-      const std::uint8_t* const bgr =
-          observation.image.ptr<std::uint8_t>(pixel.y_px) + 3 * pixel.x_px;
-      add_pixel(grid, pixel.weight[0] * a + pixel.weight[1] * b + pixel.weight[2] * c, pixel.cosine,
-                {corrected_[bgr[2]], corrected_[bgr[1]], corrected_[bgr[0]]});
+    raster.for_pixels(raster.triangle(t), [&](const FourPixels& pixels) SHEEN_INLINE_LAMBDA {
+      const auto& [at_a, at_b, at_c] = pixels.weight;
+      const FourReadings readings =
+          readings_at(at_a * a.x() + at_b * b.x() + at_c * c.x(),
+                      at_a * a.y() + at_b * b.y() + at_c * c.y(), pixels.cosine);
+      const std::uint8_t* const bgr = image + static_cast<std::size_t>(pixels.y_px) * row +
+                                      3 * static_cast<std::size_t>(pixels.x_px);
+      for_bits(pixels.shown, [&](std::size_t k) SHEEN_INLINE_LAMBDA {
+        add_pixel(grid, readings, k,
+                  Four{1, corrected_[bgr[3 * k + 2]], corrected_[bgr[3 * k + 1]],
+                       corrected_[bgr[3 * k]]});
+      });
     });
   }
+}
+
+// Bands of equal parity share no row, so each may be worked on by another thread.
+void TextureSums::integrate(const core::Observation& observation, const ViewRaster& raster) {
+  for (std::size_t value = 0; value < corrected_.size(); ++value) {
+    corrected_[value] = static_cast<float>(
+        std::clamp(std::lround(static_cast<double>(value) / observation.gain), 0L, 255L));
+  }
+  for (const std::size_t parity : {std::size_t{0}, std::size_t{1}}) {
+    core::parallel_for((bands_.size() + 1 - parity) / 2, threads_,
+                       [&](std::size_t begin, std::size_t end) {
+                         for (std::size_t i = begin; i < end; ++i) {
+                           integrate_triangles(bands_[2 * i + parity], observation, raster);
+                         }
+                       },
+                       1);
+  }
+  integrate_triangles(high_, observation, raster);
 }
 
 }  // namespace sheen::fitting::detail

@@ -38,9 +38,9 @@ class TextureSums {
   const core::Atlas& atlas_;
   int threads_;
   std::vector<TexelSums, HugePageAllocator<TexelSums>> texels_;
-  std::vector<Triangles> bands_;               ///< by first row; from left to right
-  Triangles high_;                             ///< triangles that reach over more rows
-  std::array<std::uint8_t, 256> corrected_{};  ///< a channel's value without the view's gain
+  std::vector<Triangles> bands_;        ///< by first row; from left to right
+  Triangles high_;                      ///< triangles that reach over more rows
+  std::array<float, 256> corrected_{};  ///< a channel's value without the view's gain
 };
 
 }  // namespace sheen::fitting::detail

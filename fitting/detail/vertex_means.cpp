@@ -44,29 +44,28 @@ void VertexMeans::for_vertices(const Body& body) const {
 
 // Weighted means first, which are too smooth, then steps of Jacobi's method with the weights (the
 // sums of the matrix' rows) in place of its diagonal.
-void VertexMeans::average(std::span<const CornerColours> triangles, core::SampleBatch& samples) {
+void VertexMeans::average(const ViewRaster& raster, std::span<const CornerColours> triangles,
+                          core::SampleBatch& samples) {
   for_vertices([&](std::size_t vertex) {
-    weight_[vertex] = 0;
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    Four sum{};
     for (const Corner& at : corners_at(vertex)) {
-      const CornerColours& triangle = triangles[at.triangle_idx];
-      weight_[vertex] += triangle.weight[at.corner];
-      sum += Eigen::Vector3f(triangle.colour[at.corner].data());
+      if (raster.is_front(at.triangle_idx)) sum += triangles[at.triangle_idx].colour[at.corner];
     }
-    colour_[vertex] = sum / std::max(weight_[vertex], std::numeric_limits<float>::min());
+    weight_[vertex] = sum[0];
+    colour_[vertex] = sum / std::max(sum[0], std::numeric_limits<float>::min());
   });
   for (int step = 0; step < kMeanSteps; ++step) {
     for_vertices([&](std::size_t vertex) {
       next_[vertex] = colour_[vertex];
       if (weight_[vertex] < kLeastWeight) return;
-      Eigen::Vector3f left = Eigen::Vector3f::Zero();
+      Four left{};
       for (const Corner& at : corners_at(vertex)) {
+        if (!raster.is_front(at.triangle_idx)) continue;
         const CornerColours& triangle = triangles[at.triangle_idx];
         const auto& corners = mesh_.triangles[at.triangle_idx];
         const std::uint32_t after = (at.corner + 1) % 3;
         const std::uint32_t before = (at.corner + 2) % 3;
-        left += Eigen::Vector3f(triangle.colour[at.corner].data()) -
-                triangle.square[at.corner] * colour_[vertex] -
+        left += triangle.colour[at.corner] - triangle.square[at.corner] * colour_[vertex] -
                 triangle.product[at.corner] * colour_[corners[after]] -
                 triangle.product[before] * colour_[corners[before]];
       }
@@ -77,10 +76,10 @@ void VertexMeans::average(std::span<const CornerColours> triangles, core::Sample
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const std::uint32_t vertex = samples.patch[i];
     if (weight_[vertex] < kLeastWeight) continue;
-    const Eigen::Vector3f rgb = colour_[vertex] / 255.0f;
-    samples.r[i] = rgb.x();
-    samples.g[i] = rgb.y();
-    samples.b[i] = rgb.z();
+    const Four rgb = colour_[vertex] / 255.0f;
+    samples.r[i] = rgb[1];
+    samples.g[i] = rgb[2];
+    samples.b[i] = rgb[3];
   }
 }
 

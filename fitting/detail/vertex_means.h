@@ -5,8 +5,6 @@
 #include "core/samples/sample_batch.h"
 #include "fitting/detail/texel_means.h"
 
-#include <Eigen/Core>
-
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -23,10 +21,12 @@ class VertexMeans {
   /// `mesh` outlives it.
   VertexMeans(const core::Mesh& mesh, int threads);
 
-  /// Replaces the colours of a view's samples by these. `triangles` has an entry per triangle.
+  /// Replaces the colours of a view's samples by these. `triangles` has an entry per triangle, that
+  /// counts where it is a front in `raster`.
   /// Samples with less than about one texel around them stay as they are. The same on any number of
   /// threads.
-  void average(std::span<const CornerColours> triangles, core::SampleBatch& samples);
+  void average(const ViewRaster& raster, std::span<const CornerColours> triangles,
+               core::SampleBatch& samples);
 
  private:
   struct Corner {
@@ -44,9 +44,9 @@ class VertexMeans {
   const core::Mesh& mesh_;
   int threads_;
   std::vector<std::uint32_t> offsets_;
-  std::vector<Corner> corners_;  ///< those at vertex i: [offsets_[i], offsets_[i + 1])
-  std::vector<float> weight_;    ///< of the texels around a vertex
-  std::vector<Eigen::Vector3f> colour_, next_;
+  std::vector<Corner> corners_;      ///< those at vertex i: [offsets_[i], offsets_[i + 1])
+  std::vector<float> weight_;        ///< of the texels around a vertex
+  std::vector<Four> colour_, next_;  ///< R, G and B in the last three places
 };
 
 }  // namespace sheen::fitting::detail

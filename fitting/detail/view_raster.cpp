@@ -4,6 +4,8 @@
 #include "core/concurrency/parallel_for.h"
 #include "core/visibility/raster_kernels.h"
 
+#include <limits>
+
 namespace sheen::fitting::detail {
 namespace {
 
@@ -30,29 +32,51 @@ void ViewRaster::set_view(const core::Observation& observation) {
   static_cast<void>(depth_.draw(observation.view,
                                 core::eye_in_object(observation.camera_from_object),
                                 {box_.left - 1, box_.top - 1, box_.right + 1, box_.bottom + 1}));
-  find_whole_pixels();
+  find_limits();
 }
 
 // A surface seen at a cosine of .2 changes by 5 steps per pixel; where the change is much larger a
 // pixel mixes two surfaces.
-void ViewRaster::find_whole_pixels() {
+void ViewRaster::find_limits() {
   constexpr float jump_steps = 12.0f;
-  row_ = static_cast<std::size_t>(box_.right - box_.left + 1);
+  constexpr float infinity = std::numeric_limits<float>::infinity();
+  const auto width = static_cast<std::size_t>(box_.right - box_.left + 1);
   const auto rows = static_cast<std::size_t>(box_.bottom - box_.top + 1);
-  whole_.assign(row_ * rows, 0);
+  row_ = (width + 3) / 4 * 4 + 4;
+  pixel_limit_.resize(row_ * rows);
+  place_limit_.resize(row_ * rows);
+  const float most_jump = jump_steps * step_;
   core::parallel_for(
       rows, threads_,
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t row = begin; row < end; ++row) {
           const int y = box_.top + static_cast<int>(row);
-          for (int x = box_.left; x <= box_.right; ++x) {
-            const float here = depth_.at(x, y);
-            const float limit = jump_steps * step_ * here;
-            const auto continues = [&](float other) { return std::abs(other - here) <= limit; };
-            const bool whole = here > 0.0f && continues(depth_.at(x - 1, y)) &&
-                               continues(depth_.at(x + 1, y)) && continues(depth_.at(x, y - 1)) &&
-                               continues(depth_.at(x, y + 1));
-            whole_[row * row_ + static_cast<std::size_t>(x - box_.left)] = whole ? 1 : 0;
+          const float* const above = depth_.from(box_.left, y - 1);
+          const float* const here = depth_.from(box_.left, y);
+          const float* const below = depth_.from(box_.left, y + 1);
+          float* const limit = pixel_limit_.data() + row * row_;
+          for (std::size_t x = 0; x < width; ++x) {
+            const float most = most_jump * here[x];
+            const auto jump = [&](const float* other) { return std::abs(*other - here[x]); };
+            const float jumps = std::max(std::max(jump(here + x - 1), jump(here + x + 1)),
+                                         std::max(jump(above + x), jump(below + x)));
+            limit[x] = (here[x] > 0.0f) & (jumps <= most) ? here[x] : infinity;
+          }
+          std::fill(limit + width, limit + row_, infinity);
+        }
+      },
+      16);
+  core::parallel_for(
+      rows, threads_,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t row = begin; row < end; ++row) {
+          const float* const upper = pixel_limit_.data() + row * row_;
+          const float* const lower = row + 1 < rows ? upper + row_ : upper;
+          float* const limit = place_limit_.data() + row * row_;
+          for (std::size_t x = 0; x < width; ++x) {
+            const float greatest =
+                std::max(std::max(upper[x], upper[x + 1]), std::max(lower[x], lower[x + 1]));
+            limit[x] = greatest < infinity ? upper[x] : infinity;
           }
         }
       },
@@ -111,14 +135,6 @@ void ViewRaster::find_fronts() {
       is_front_[t] = static_cast<std::uint8_t>(projected & frontal & (area > 0.0f));
     }
   });
-}
-
-std::optional<SeenTriangle> ViewRaster::triangle(std::size_t triangle_idx) const {
-  if (is_front_[triangle_idx] == 0) return std::nullopt;
-  const auto& vertex = mesh_.triangles[triangle_idx];
-  SeenTriangle triangle{{vertices_[vertex[0]], vertices_[vertex[1]], vertices_[vertex[2]]}};
-  for (std::size_t i = 0; i < 3; ++i) triangle.depth_m[i] = 1.0f / triangle.corner[i].inverse_depth;
-  return triangle;
 }
 
 bool ViewRaster::is_at_outline(float x_px, float y_px) const {

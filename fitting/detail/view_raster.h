@@ -4,6 +4,7 @@
 #include "core/mesh/mesh.h"
 #include "core/samples/observation.h"
 #include "core/visibility/z_buffer.h"
+#include "fitting/detail/four.h"
 
 #include <Eigen/Core>
 
@@ -12,7 +13,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 namespace sheen::fitting::detail {
@@ -25,22 +25,21 @@ struct alignas(16) SeenVertex {
 };
 
 /// A triangle in a view, its front on the image.
-struct SeenTriangle {
-  std::array<SeenVertex, 3> corner;
-  std::array<float, 3> depth_m{};  ///< of the corners
+using SeenTriangle = std::array<SeenVertex, 3>;
 
-  /// Interpolated on the surface; the weights of the corners add up to 1.
-  [[nodiscard]] float cosine(const std::array<float, 3>& weight) const {
-    return weight[0] * corner[0].cosine + weight[1] * corner[1].cosine +
-           weight[2] * corner[2].cosine;
-  }
+/// Four pixels of a row, side by side.
+struct FourPixels {
+  int x_px, y_px;  ///< of the first
+  unsigned shown;  ///< bit i: the centre of the i-th shows the triangle. Nothing else holds then:
+  FourWeights weight;  ///< on the surface
+  Four cosine;         ///< between normal and view, > 0
 };
 
-/// A pixel whose centre shows a triangle.
-struct SurfacePixel {
-  int x_px, y_px;
-  std::array<float, 3> weight;  ///< of the triangle's corners on the surface, sum 1
-  float cosine;                 ///< between normal and view, > 0
+/// Where four points of a triangle are seen.
+struct FourPlaces {
+  unsigned seen;    ///< bit i: the i-th is. Nothing else holds of those that are not:
+  Four x_px, y_px;  ///< a pixel or more from the border
+  Four cosine;      ///< between normal and view, > 0
 };
 
 /// Where a view shows which part of a mesh. Places are left out that something else hides, that lie
@@ -54,13 +53,14 @@ class ViewRaster {
   /// Looks at another view of the mesh.
   void set_view(const core::Observation& observation);
 
-  /// A triangle, whether or not something hides it; nothing where it is turned away, edge-on, at a
-  /// grazing angle or has a corner without a pixel.
-  [[nodiscard]] std::optional<SeenTriangle> triangle(std::size_t triangle_idx) const;
-
-  /// Whether `triangle` has something.
+  /// Whether a triangle, which something may hide, is turned towards the camera, not at a grazing
+  /// angle, and has a pixel for every corner. Only then may it be asked for.
   [[nodiscard]] bool is_front(std::size_t triangle_idx) const {
     return is_front_[triangle_idx] != 0;
+  }
+  [[nodiscard]] SeenTriangle triangle(std::size_t triangle_idx) const {
+    const auto& vertex = mesh_.triangles[triangle_idx];
+    return {vertices_[vertex[0]], vertices_[vertex[1]], vertices_[vertex[2]]};
   }
 
   /// Memory answers late: asks it for what `triangle` will need.
@@ -71,18 +71,16 @@ class ViewRaster {
     }
   }
 
-  /// Where a point of a triangle is seen, pixels; nothing where it is not. The weights of the
-  /// corners add up to 1.
-  [[nodiscard]] std::optional<Eigen::Vector2f> place(const SeenTriangle& triangle,
-                                                     const std::array<float, 3>& weight) const;
+  /// Where points of a triangle are seen.
+  [[nodiscard]] FourPlaces places(const SeenTriangle& triangle, const FourWeights& weight) const;
 
   /// Whether a pixel around a place shows nothing of the mesh.
   [[nodiscard]] bool is_at_outline(float x_px, float y_px) const;
 
-  /// Calls `visit(pixel)` for every pixel that shows the triangle, row by row. May be called from
-  /// several threads at once.
+  /// Calls `visit(FourPixels)` for all pixels that show the triangle, row by row. May be called
+  /// from several threads at once.
   template <typename Visit>
-  void for_each_pixel(const SeenTriangle& triangle, const Visit& visit) const;
+  void for_pixels(const SeenTriangle& triangle, const Visit& visit) const;
 
  private:
   static constexpr float kLeastCosine = 0.2f;  ///< as SamplingLimits
@@ -90,11 +88,9 @@ class ViewRaster {
   void project(const core::Observation& observation);
   void find_fronts();
   [[nodiscard]] core::PixelBox box_of(const core::Observation& observation) const;
-  void find_whole_pixels();
-  /// Whether the pixel shows one surface; it lies in the box.
-  [[nodiscard]] bool is_whole(int x, int y) const {
-    return whole_[static_cast<std::size_t>(y - box_.top) * row_ +
-                  static_cast<std::size_t>(x - box_.left)] != 0;
+  void find_limits();
+  [[nodiscard]] std::size_t at(int x, int y) const {
+    return static_cast<std::size_t>(y - box_.top) * row_ + static_cast<std::size_t>(x - box_.left);
   }
 
   const core::Mesh& mesh_;
@@ -103,46 +99,47 @@ class ViewRaster {
   std::vector<SeenVertex> vertices_;
   std::vector<std::uint8_t> is_front_;  ///< of the triangles, 1 or 0
   core::PixelBox box_;                  ///< pixels that may be visited
-  float step_ = 0;                   ///< angle of a pixel: change of depth per pixel at 45 degrees
-  std::size_t row_ = 0;              ///< pixels in a row of the box
-  std::vector<std::uint8_t> whole_;  ///< 1 where the four pixels around show the same surface
+  float step_ = 0;                  ///< angle of a pixel: change of depth per pixel at 45 degrees
+  std::size_t row_ = 0;             ///< numbers in a row of the two that follow, which hold the box
+  std::vector<float> pixel_limit_;  ///< inverse depth that the pixel shows; infinite where it mixes
+  std::vector<float>
+      place_limit_;  ///< the same for places between it, right, below and below right
 };
 
-inline std::optional<Eigen::Vector2f> ViewRaster::place(const SeenTriangle& triangle,
-                                                        const std::array<float, 3>& weight) const {
-  const float cosine = triangle.cosine(weight);
-  if (!(cosine >= kLeastCosine)) return std::nullopt;
+SHEEN_INLINE FourPlaces ViewRaster::places(const SeenTriangle& triangle,
+                                           const FourWeights& weight) const {
+  const auto& [a, b, c] = triangle;
   // Weights on the surface, then on the image.
-  float depth_m = 0;
-  Eigen::Vector2f sum = Eigen::Vector2f::Zero();
-  for (std::size_t i = 0; i < 3; ++i) {
-    const SeenVertex& corner = triangle.corner[i];
-    const float part_m = weight[i] * triangle.depth_m[i];
-    depth_m += part_m;
-    sum += part_m * Eigen::Vector2f(corner.x_px, corner.y_px);
-  }
-  const float inverse_depth = 1.0f / depth_m;
-  const Eigen::Vector2f at_px = sum * inverse_depth;
-  if (!(at_px.x() >= static_cast<float>(box_.left) && at_px.x() < static_cast<float>(box_.right) &&
-        at_px.y() >= static_cast<float>(box_.top) && at_px.y() < static_cast<float>(box_.bottom))) {
-    return std::nullopt;
-  }
+  const Four part_a = weight[0] * (1.0f / a.inverse_depth);
+  const Four part_b = weight[1] * (1.0f / b.inverse_depth);
+  const Four part_c = weight[2] * (1.0f / c.inverse_depth);
+  const Four inverse_depth = 1.0f / (part_a + part_b + part_c);
+  FourPlaces places{};
+  places.x_px = (part_a * a.x_px + part_b * b.x_px + part_c * c.x_px) * inverse_depth;
+  places.y_px = (part_a * a.y_px + part_b * b.y_px + part_c * c.y_px) * inverse_depth;
+  places.cosine = weight[0] * a.cosine + weight[1] * b.cosine + weight[2] * c.cosine;
+  const FourInts within = (places.cosine >= kLeastCosine) &
+                          (places.x_px >= static_cast<float>(box_.left)) &
+                          (places.x_px < static_cast<float>(box_.right)) &
+                          (places.y_px >= static_cast<float>(box_.top)) &
+                          (places.y_px < static_cast<float>(box_.bottom));
   // The four pixels around must show one surface, and nothing nearer than the point: within a pixel
   // the surface rises by tan = sqrt(1 - c^2) / c steps.
-  const auto x = static_cast<int>(at_px.x());
-  const auto y = static_cast<int>(at_px.y());
-  const bool whole =
-      is_whole(x, y) && is_whole(x + 1, y) && is_whole(x, y + 1) && is_whole(x + 1, y + 1);
-  if (!whole) return std::nullopt;
-  const float rise = 1.0f + 2.0f * std::sqrt(std::max(0.0f, 1.0f - cosine * cosine)) / cosine;
-  if (depth_.at(x, y) > (1.0f + rise * step_) * inverse_depth) return std::nullopt;
-  return at_px;
+  const Four cosine = within ? places.cosine : Four{1, 1, 1, 1};
+  const Four rise = 1.0f + 2.0f * roots(greater(1.0f - cosine * cosine, Four{})) / cosine;
+  const Four limit = (1.0f + rise * step_) * inverse_depth;
+  const FourInts x = as_ints(within ? places.x_px : Four{});
+  const FourInts y = as_ints(within ? places.y_px : Four{});
+  for_bits(bits_of(within), [&](std::size_t i) SHEEN_INLINE_LAMBDA {
+    const bool seen = place_limit_[at(x[i], y[i])] <= limit[i];
+    places.seen |= static_cast<unsigned>(seen) << i;
+  });
+  return places;
 }
 
 template <typename Visit>
-void ViewRaster::for_each_pixel(const SeenTriangle& triangle, const Visit& visit) const {
-  const auto& [a, b, c] = triangle.corner;
-  const float area = (c.x_px - a.x_px) * (b.y_px - a.y_px) - (b.x_px - a.x_px) * (c.y_px - a.y_px);
+SHEEN_INLINE void ViewRaster::for_pixels(const SeenTriangle& triangle, const Visit& visit) const {
+  const auto& [a, b, c] = triangle;
   const auto first = [](float x, int least) {
     return std::max(least, static_cast<int>(std::ceil(std::max(x, -1.0f))));
   };
@@ -153,25 +150,32 @@ void ViewRaster::for_each_pixel(const SeenTriangle& triangle, const Visit& visit
   const int right = last(std::max({a.x_px, b.x_px, c.x_px}), box_.right);
   const int top = first(std::min({a.y_px, b.y_px, c.y_px}), box_.top);
   const int bottom = last(std::max({a.y_px, b.y_px, c.y_px}), box_.bottom);
-  const float per_area = 1.0f / area;
+  const float to_b_x = b.x_px - a.x_px, to_b_y = b.y_px - a.y_px;
+  const float to_c_x = c.x_px - a.x_px, to_c_y = c.y_px - a.y_px;
+  const float per_area = 1.0f / (to_c_x * to_b_y - to_b_x * to_c_y);
   for (int y = top; y <= bottom; ++y) {
-    for (int x = left; x <= right; ++x) {
+    const float dy = static_cast<float>(y) - a.y_px;
+    for (int x = left; x <= right; x += 4) {
       // Weights on the image, then on the surface.
-      const float dx = static_cast<float>(x) - a.x_px;
-      const float dy = static_cast<float>(y) - a.y_px;
-      const float at_b = (dy * (c.x_px - a.x_px) - dx * (c.y_px - a.y_px)) * per_area;
-      const float at_c = (dx * (b.y_px - a.y_px) - dy * (b.x_px - a.x_px)) * per_area;
-      const float at_a = 1.0f - at_b - at_c;
-      if (std::min({at_a, at_b, at_c}) < 0.0f) continue;
-      const float near_a = at_a * a.inverse_depth;
-      const float near_b = at_b * b.inverse_depth;
-      const float near_c = at_c * c.inverse_depth;
-      const float inverse_depth = near_a + near_b + near_c;
-      if (!is_whole(x, y) || depth_.at(x, y) > inverse_depth * (1.0f + step_)) continue;
-      const float depth_m = 1.0f / inverse_depth;
-      SurfacePixel pixel{x, y, {near_a * depth_m, near_b * depth_m, near_c * depth_m}, 0.0f};
-      pixel.cosine = triangle.cosine(pixel.weight);
-      if (pixel.cosine >= kLeastCosine) visit(pixel);
+      const Four centre = Four{0, 1, 2, 3} + static_cast<float>(x);
+      const Four dx = centre - a.x_px;
+      const Four at_b = (dy * to_c_x - dx * to_c_y) * per_area;
+      const Four at_c = (dx * to_b_y - dy * to_b_x) * per_area;
+      const Four at_a = 1.0f - at_b - at_c;
+      const FourInts inside =
+          (at_a >= 0.0f) & (at_b >= 0.0f) & (at_c >= 0.0f) & (centre <= static_cast<float>(right));
+      if (bits_of(inside) == 0) continue;
+      FourPixels pixels{
+          x, y, 0, {at_a * a.inverse_depth, at_b * b.inverse_depth, at_c * c.inverse_depth}, {}};
+      const Four inverse_depth = pixels.weight[0] + pixels.weight[1] + pixels.weight[2];
+      const Four depth_m = 1.0f / inverse_depth;
+      for (Four& weight : pixels.weight) weight *= depth_m;
+      pixels.cosine =
+          pixels.weight[0] * a.cosine + pixels.weight[1] * b.cosine + pixels.weight[2] * c.cosine;
+      pixels.shown =
+          bits_of(inside & (pixels.cosine >= kLeastCosine) &
+                  (load_four(&pixel_limit_[at(x, y)]) <= inverse_depth * (1.0f + step_)));
+      if (pixels.shown != 0) visit(pixels);
     }
   }
 }

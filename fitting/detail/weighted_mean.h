@@ -19,9 +19,9 @@ struct alignas(16) WeightedMean {
   std::uint32_t weight = 0;               ///< sum of q, in 64ths
   std::array<std::uint32_t, 3> colour{};  ///< sum of q times the colour, RGB, in 1020ths
 
-  /// Adds a colour: 1, R, G, B, 0 to 255 each. Takes no more when its sums could overflow: after
-  /// 65,000 views that see the place frontally.
-  void add(const Four& one_rgb, float squared_cosine) {
+  /// Adds a colour: 1, R, G, B, 0 to 255 each. Takes no more when its sums could reach 2^31: after
+  /// 32,000 views that see the place frontally.
+  SHEEN_INLINE void add(const Four& one_rgb, float squared_cosine) {
     if (weight > kFull) return;
     const FourCounts units =
         as_counts(one_rgb * Four{1, kColourUnits, kColourUnits, kColourUnits} + 0.5f);
@@ -32,6 +32,13 @@ struct alignas(16) WeightedMean {
     std::memcpy(static_cast<void*>(this), &sums, sizeof(sums));
   }
 
+  /// A number without meaning, then the mean, 0 to 255; weight > 0.
+  [[nodiscard]] SHEEN_INLINE Four any_rgb() const {
+    FourInts sums;
+    std::memcpy(&sums, this, sizeof(sums));
+    const Four weighted = as_four(sums);
+    return weighted * (1.0f / (kColourUnits * weighted[0]));
+  }
   /// Sum of q.
   [[nodiscard]] float observations() const { return static_cast<float>(weight) / kWeightUnits; }
   /// The mean, 0 to 255; weight > 0.
@@ -47,7 +54,7 @@ struct alignas(16) WeightedMean {
  private:
   static constexpr float kWeightUnits = 64.0f;
   static constexpr float kColourUnits = 4.0f;  // of a step of the image
-  static constexpr std::uint32_t kFull = 0xffffffffU / 1020U - 64U;
+  static constexpr std::uint32_t kFull = 0x7fffffffU / 1020U - 64U;
 };
 static_assert(sizeof(WeightedMean) == 16);
 

@@ -5,7 +5,7 @@
 #include "core/image/bilinear.h"
 
 #include <algorithm>
-#include <cmath>
+#include <span>
 
 namespace sheen::fitting::eigen_texture {
 
@@ -48,23 +48,25 @@ std::vector<SeenTexel> TexelReader::read(const core::Observation& observation) {
 }
 
 void TexelReader::read_triangle(std::uint32_t triangle_idx, const core::Observation& observation) {
-  const auto triangle = raster_.triangle(triangle_idx);
+  const std::span<const detail::SurfaceTexel> texels = surface_.of(triangle_idx);
+  for (const detail::SurfaceTexel& texel : texels) by_texel_[texel.texel_idx].weight = 0;
+  if (!raster_.is_front(triangle_idx)) return;
+  const detail::SeenTriangle triangle = raster_.triangle(triangle_idx);
   const auto without_gain = static_cast<float>(1 / observation.gain);
-  for (const detail::SurfaceTexel& texel : surface_.of(triangle_idx)) {
-    SeenTexel& seen = by_texel_[texel.texel_idx];
-    seen.weight = 0;
-    if (!triangle) continue;
-    const std::array<float, 3> weight{1.0f - texel.at_second - texel.at_third, texel.at_second,
-                                      texel.at_third};
-    const auto at_px = raster_.place(*triangle, weight);
-    if (!at_px) continue;
-    const std::array<float, 3> rgb = core::bilinear_rgb(observation.image, *at_px);
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      seen.rgb[channel] =
-          static_cast<std::uint8_t>(std::min(255.0f, rgb[channel] * without_gain) + 0.5f);
-    }
-    const float cosine = std::min(1.0f, triangle->cosine(weight));
-    seen.weight = static_cast<std::uint8_t>(std::max(1.0f, cosine * cosine * 255.0f));
+  for (std::size_t first = 0; first < texels.size(); first += 4) {
+    const detail::FourPlaces places =
+        raster_.places(triangle, detail::weights_of_four(&texels[first]));
+    detail::for_bits(places.seen & detail::bits_below(texels.size() - first), [&](std::size_t i) {
+      SeenTexel& seen = by_texel_[texels[first + i].texel_idx];
+      const std::array<float, 3> rgb =
+          core::bilinear_rgb(observation.image, {places.x_px[i], places.y_px[i]});
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        seen.rgb[channel] =
+            static_cast<std::uint8_t>(std::min(255.0f, rgb[channel] * without_gain) + 0.5f);
+      }
+      const float cosine = std::min(1.0f, places.cosine[i]);
+      seen.weight = static_cast<std::uint8_t>(std::max(1.0f, cosine * cosine * 255.0f));
+    });
   }
 }
 

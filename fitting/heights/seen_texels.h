@@ -88,23 +88,25 @@ template <typename Visit>
 void SeenTexels::visit_triangle(std::size_t triangle_idx, const Visit& visit) const {
   constexpr float least_cosine = 0.2f;  // as ViewRaster, but of the flat triangle
   const TrianglePlane& plane = planes_[triangle_idx];
-  const auto triangle = raster_.triangle(triangle_idx);
-  if (!triangle || plane.normal.isZero(0)) return;
+  if (!raster_.is_front(triangle_idx) || plane.normal.isZero(0)) return;
+  const detail::SeenTriangle triangle = raster_.triangle(triangle_idx);
   const auto& corners = mesh_.triangles[triangle_idx];
-  for (const detail::SurfaceTexel& texel : surface_.of(triangle_idx)) {
-    const std::array<float, 3> weight{1.0f - texel.at_second - texel.at_third, texel.at_second,
-                                      texel.at_third};
-    const auto at_px = raster_.place(*triangle, weight);
-    if (!at_px) continue;
-    const Eigen::Vector3f towards_eye =
-        eye_ - (weight[0] * mesh_.positions[corners[0]] + weight[1] * mesh_.positions[corners[1]] +
-                weight[2] * mesh_.positions[corners[2]]);
-    const float height = towards_eye.dot(plane.normal);
-    if (!(height >= least_cosine * towards_eye.norm())) continue;
-    const float cosine = triangle->cosine(weight);
-    visit(triangle_idx,
-          SeenTexel{texel.texel_idx, weight, cosine * cosine, core::bilinear_rgb(image_, *at_px),
-                    plane.atlas_from_object * towards_eye / height});
+  const std::span<const detail::SurfaceTexel> texels = surface_.of(triangle_idx);
+  for (std::size_t first = 0; first < texels.size(); first += 4) {
+    const detail::FourWeights weights = detail::weights_of_four(&texels[first]);
+    const detail::FourPlaces places = raster_.places(triangle, weights);
+    detail::for_bits(places.seen & detail::bits_below(texels.size() - first), [&](std::size_t i) {
+      const std::array<float, 3> weight{weights[0][i], weights[1][i], weights[2][i]};
+      const Eigen::Vector3f towards_eye = eye_ - (weight[0] * mesh_.positions[corners[0]] +
+                                                  weight[1] * mesh_.positions[corners[1]] +
+                                                  weight[2] * mesh_.positions[corners[2]]);
+      const float height = towards_eye.dot(plane.normal);
+      if (!(height >= least_cosine * towards_eye.norm())) return;
+      visit(triangle_idx,
+            SeenTexel{texels[first + i].texel_idx, weight, places.cosine[i] * places.cosine[i],
+                      core::bilinear_rgb(image_, {places.x_px[i], places.y_px[i]}),
+                      plane.atlas_from_object * towards_eye / height});
+    });
   }
 }
 

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Compiled with options of its own (fitting/CMakeLists.txt): nothing may be fused, so that every
-// instruction set gives the same bits; square roots set no errno.
 #include "fitting/sparse/columns.h"
+
+#include "fitting/every_processor.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
-
-// Copies are chosen while the program is loaded, when ThreadSanitizer has not started yet.
-#if defined(__x86_64__) && defined(__gnu_linux__) && !defined(__SANITIZE_THREAD__)
-#define SHEEN_FOR_EVERY_PROCESSOR __attribute__((target_clones("arch=x86-64-v3", "default")))
-#else
-#define SHEEN_FOR_EVERY_PROCESSOR
-#endif
-#define SHEEN_INLINE __attribute__((always_inline)) inline
 
 namespace sheen::fitting::sparse::columns {
 namespace {
@@ -155,6 +148,31 @@ void squared_lengths(const Column* columns, std::size_t count, std::size_t rows,
     for (std::size_t k = 0; k < count; ++k) sums += group(columns[k], row) * group(columns[k], row);
     group(out, row) = sums;
   }
+}
+
+SHEEN_FOR_EVERY_PROCESSOR
+std::size_t best_gain(const float* r, const float* g, const float* b, const float* remainder,
+                      std::size_t count, float least) {
+  using Indices = std::int32_t __attribute__((vector_size(kRowGroup * sizeof(std::int32_t))));
+  const auto at = [](const float* numbers, std::size_t k)
+                      SHEEN_INLINE_LAMBDA { return *reinterpret_cast<const Group*>(numbers + k); };
+  // The best of every place in the groups, then the best of these.
+  Group greatest{};
+  Indices where = static_cast<std::int32_t>(count) + Indices{};
+  Indices here{0, 1, 2, 3, 4, 5, 6, 7};
+  for (std::size_t k = 0; k < count; k += kRowGroup, here += kRowGroup) {
+    const Group divisor = at(remainder, k);
+    const Group squared = at(r, k) * at(r, k) + at(g, k) * at(g, k) + at(b, k) * at(b, k);
+    const Group gain = divisor > least ? squared / (divisor > least ? divisor : Group{} + 1) : 0;
+    where = gain > greatest ? here : where;
+    greatest = gain > greatest ? gain : greatest;
+  }
+  std::size_t best = 0;
+  for (std::size_t place = 1; place < kRowGroup; ++place) {
+    const bool first = greatest[place] == greatest[best] && where[place] < where[best];
+    if (greatest[place] > greatest[best] || first) best = place;
+  }
+  return static_cast<std::size_t>(where[best]);
 }
 
 }  // namespace sheen::fitting::sparse::columns

@@ -52,5 +52,11 @@ void scale(const Column& factor, std::size_t rows, Column& out);
 /// out[i] = sum_k columns[k][i]^2.
 void squared_lengths(const Column* columns, std::size_t count, std::size_t rows, Column& out);
 
+/// The first k < count with the greatest (r_k^2 + g_k^2 + b_k^2) / remainder_k among those whose
+/// remainder is greater than `least`; `count` where none is greater than zero. `count` is a
+/// multiple of kRowGroup, and the numbers are aligned like columns.
+std::size_t best_gain(const float* r, const float* g, const float* b, const float* remainder,
+                      std::size_t count, float least);
+
 }  // namespace columns
 }  // namespace sheen::fitting::sparse

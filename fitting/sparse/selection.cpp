@@ -68,17 +68,10 @@ void Selection::follow(Candidates& candidates) const {
 // Takes out the best; nothing when none is left that differs from what is there.
 std::optional<FunctionIdx> Selection::take_best(Candidates& candidates) {
   constexpr float smallest_remainder = 1e-4f;
-  const auto& s = candidates.correlation;
-  std::array<float, kMaxAtoms> gains;
-  for (std::size_t atom = 0; atom < gains.size(); ++atom) {
-    const float squared =
-        s[0][atom] * s[0][atom] + s[1][atom] * s[1][atom] + s[2][atom] * s[2][atom];
-    const float remainder = std::max(smallest_remainder, candidates.remainder[atom]);
-    gains[atom] = candidates.remainder[atom] > smallest_remainder ? squared / remainder : 0.0f;
-  }
-  const auto best = std::max_element(gains.begin(), gains.end());
-  if (!(*best > 0.0f)) return std::nullopt;
-  const auto atom = static_cast<std::size_t>(best - gains.begin());
+  const auto& [r, g, b] = candidates.correlation;
+  const std::size_t atom = columns::best_gain(
+      r.data(), g.data(), b.data(), candidates.remainder.data(), kMaxAtoms, smallest_remainder);
+  if (atom == kMaxAtoms) return std::nullopt;
   candidates.remainder[atom] = 0.0f;
   return kLinearBase + atom;
 }

@@ -211,6 +211,26 @@ TEST(Detail, SmallMeshesAndLargeTexels) {
   EXPECT_EQ(model_of(*fitter).mean_colour(0), model_of(*fitter).mean_colour(2));
 }
 
+// Half a million triangles, most of them without a texel or a pixel of their own: the texture grows
+// with the surface and not with the mesh (4 pi (100 mm)^2 / (1.3 mm)^2 = 74,000 texels, and as many
+// again for the rims of charts and the vertices' share), and reads everywhere as the one colour.
+TEST(Detail, AMeshFarFinerThanItsTexels) {
+  const Eigen::Vector3f colour(0.2f, 0.4f, 0.6f);
+  const Photographs views(render::testing::sphere(0.1f, 355), 2,
+                          [&](const auto&, const auto&) { return colour; });
+  const auto& triangles = views.mesh().triangles;
+  ASSERT_GT(triangles.size(), 500'000u);
+  const auto fitter = make(views.mesh(), 2);
+  views.show(first(2), *fitter);
+  fitter->finish();
+  const SurfaceTexture& texture = model_of(*fitter).texture();
+  EXPECT_LT(texture.texel_count().offered, 150'000u);
+  for (std::size_t t = 0; t < triangles.size(); t += 997) {
+    const Eigen::Vector3f found = texture.at(t, Eigen::Vector3f::Constant(1.0f / 3.0f));
+    EXPECT_LT((found - colour).cwiseAbs().maxCoeff(), 2.0f / 255) << t;
+  }
+}
+
 // Half of a sphere is never seen: its texels take what the patches around them have.
 TEST(Detail, UnseenFacesTakeTheirNeighboursColour) {
   const Eigen::Vector3f colour(0.8f, 0.4f, 0.2f);

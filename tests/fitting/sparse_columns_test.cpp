@@ -104,5 +104,34 @@ TEST(SparseColumns, ProductsAndDifferencesAreThoseOfPlainLoops) {
   }
 }
 
+// Numbers that are often equal, so that the first of several greatest has to be found; a third of
+// the remainders say that there is nothing to gain.
+TEST(SparseColumns, TheBestGainIsTheFirstOfTheGreatest) {
+  constexpr std::size_t count = 40;
+  constexpr float least = 0.5f;
+  std::mt19937 random(4);
+  for (int round = 0; round < 200; ++round) {
+    Column r{}, g{}, b{}, remainder{};
+    std::size_t expected = count;
+    float greatest = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      for (Column* const column : {&r, &g, &b}) {
+        column->row[k] = static_cast<float>(random() % 5) - 2.0f;
+      }
+      remainder.row[k] = 0.5f * static_cast<float>(random() % 3);
+      if (!(remainder.row[k] > least)) continue;
+      const float gain =
+          (r.row[k] * r.row[k] + g.row[k] * g.row[k] + b.row[k] * b.row[k]) / remainder.row[k];
+      if (!(gain > greatest)) continue;
+      greatest = gain;
+      expected = k;
+    }
+    EXPECT_EQ(columns::best_gain(r.row, g.row, b.row, remainder.row, count, least), expected);
+  }
+  const Column nothing{};
+  EXPECT_EQ(columns::best_gain(nothing.row, nothing.row, nothing.row, nothing.row, count, least),
+            count);
+}
+
 }  // namespace
 }  // namespace sheen::fitting::sparse

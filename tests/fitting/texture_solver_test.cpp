@@ -22,12 +22,18 @@ std::vector<TexelSums> empty_sums() {
   return std::vector<TexelSums>(kWidth * kHeight);
 }
 
+/// A grey pixel that sees this place.
+void see(const TexelGrid& grid, const Eigen::Vector2f& place, float cosine, std::uint32_t value) {
+  const auto grey = static_cast<float>(value);
+  add_pixel(grid, readings_at(place.x() + Four{}, place.y() + Four{}, cosine + Four{}), 0,
+            Four{1, grey, grey, grey});
+}
+
 /// A pixel that sees the texel's centre moved by (right, below) texels.
 void see(std::vector<TexelSums>& sums, std::size_t x, std::size_t y, float right, float below,
          float cosine, std::uint32_t value) {
-  const Eigen::Vector2f place(static_cast<float>(x) + 0.5f + right,
-                              static_cast<float>(y) + 0.5f + below);
-  add_pixel({sums.data(), kWidth}, place, cosine, {value, value, value});
+  see({sums.data(), kWidth},
+      {static_cast<float>(x) + 0.5f + right, static_cast<float>(y) + 0.5f + below}, cosine, value);
 }
 
 float bilinear(const std::vector<float>& texture, std::size_t x, std::size_t y, float right,
@@ -165,9 +171,8 @@ class SeenSquare : public ::testing::Test {
         const std::size_t x = texel.texel_idx % width_;
         const std::size_t y = texel.texel_idx / width_;
         const auto value = static_cast<std::uint32_t>(colour_of(x, y));
-        add_pixel({sums.data(), width_},
-                  {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}, 1,
-                  {value, value, value});
+        see({sums.data(), width_}, {static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f}, 1,
+            value);
       }
     }
     return sums;
