@@ -215,7 +215,7 @@ PatchTexels detail_texels(const core::Mesh& mesh, const fitting::LightField& lig
   if (detail.anchors()) {
     throw core::bad_input("the model",
                           "has its directions at anchors, which the web viewer does not draw",
-                          "fit with --directions vertex");
+                          "fit with --offsets vertex");
   }
   auto [texels, offsets] = rounded_patches(detail.offsets());
   texels.rounded = std::make_unique<DetailLightField>(mesh, detail.texture(), std::move(offsets));

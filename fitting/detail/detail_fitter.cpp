@@ -174,7 +174,7 @@ const ModelUpdate& DetailFitter::finish() {
   Planes planes = starting_texture();
   solve_texture(texture_sums_.texels(), static_cast<std::size_t>(model_.texture().atlas().width),
                 mesh_, texel_means_.surface(), threads_, planes);
-  if (options_.directions == Directions::anchors) move_to_anchors(planes);
+  if (options_.offsets == OffsetPlaces::anchors) move_to_anchors(planes);
   model_.texture().set_texel_count(
       simplify_texture(model_.texture().atlas(), texel_weights(), noise(), threads_, planes));
   store_texture(planes);

@@ -149,21 +149,31 @@ void sweep(const Given& given, const Residuals& residuals, const Followers& foll
   anchors.models() = std::move(next);
 }
 
-struct Candidate {
+/// Anchors after some sweeps.
+struct Swept {
   AnchoredOffsets anchors;
-  double squared;
+  double squared;  ///< what they leave
 };
 
-Candidate fitted(const Given& given, const AnchorLayout& layout, AskedDirection asked,
-                 Residuals& residuals) {
-  AnchoredOffsets anchors(given.mesh, layout, asked, zeros(layout.vertices.size()));
-  const Followers followers(anchors.blends(), layout.vertices.size());
+Swept swept(const Given& given, AnchoredOffsets anchors, int sweeps, Residuals& residuals) {
+  const Followers followers(anchors.blends(), anchors.layout().vertices.size());
   double squared = residuals.update(anchors);
-  for (int i = 0; i < kSweeps; ++i) {
+  for (int i = 0; i < sweeps; ++i) {
     sweep(given, residuals, followers, anchors);
     squared = residuals.update(anchors);
   }
   return {std::move(anchors), squared};
+}
+
+/// Asked in the directions that leave less after the first sweep.
+AnchoredOffsets fitted(const Given& given, const AnchorLayout& layout, Residuals& residuals) {
+  const auto first = [&](AskedDirection asked) {
+    return swept(given, {given.mesh, layout, asked, zeros(layout.vertices.size())}, 1, residuals);
+  };
+  Swept same = first(AskedDirection::same);
+  Swept mirrored = first(AskedDirection::mirrored);
+  Swept& better = mirrored.squared < same.squared ? mirrored : same;
+  return swept(given, std::move(better.anchors), kSweeps - 1, residuals).anchors;
 }
 
 /// Without those that only blend with zeros.
@@ -216,13 +226,8 @@ FittedAnchors fit_anchors(const core::Mesh& mesh, const sparse::SparseFitter& pa
   const Given given{mesh, patches, options, threads};
   const AnchorLayout layout{scatter_anchors(mesh, spacing_m), spacing_m};
   Residuals residuals(patches, threads);
-  const Candidate same = fitted(given, layout, AskedDirection::same, residuals);
-  const Candidate mirrored = fitted(given, layout, AskedDirection::mirrored, residuals);
-  const Candidate& better = mirrored.squared < same.squared ? mirrored : same;
-  fprintf(stderr, "same %g mirrored %g anchors %zu\n", same.squared, mirrored.squared,
-          layout.vertices.size());
-
-  FittedAnchors found{without_idle(mesh, better.anchors),
+  const AnchoredOffsets anchors = fitted(given, layout, residuals);
+  FittedAnchors found{without_idle(mesh, anchors),
                       std::vector<Eigen::Vector3f>(mesh.positions.size(), Eigen::Vector3f::Zero())};
   if (!found.offsets) return found;
   core::parallel_for(found.mean.size(), threads, [&](std::size_t begin, std::size_t end) {

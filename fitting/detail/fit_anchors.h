@@ -24,9 +24,9 @@ struct FittedAnchors {
 /// Anchors as far apart as `spacing_m` (> 0), fitted to what the patches' samples differ by from
 /// their means. An anchor's samples are those of all vertices that blend it; its terms are chosen
 /// as a patch's are. Three sweeps over all anchors, each towards what the blends of the last one
-/// leave; with both ways of asking them, of which the better one is taken. Anchors with whom no
-/// vertex differs from zero are dropped. Takes 12 bytes for every kept sample. The same on any
-/// number of threads.
+/// leave. Of the two ways of asking them the one that leaves less after the first sweep is taken.
+/// Anchors with which no vertex differs from zero are dropped. Takes 12 bytes for every kept
+/// sample. The same on any number of threads.
 FittedAnchors fit_anchors(const core::Mesh& mesh, const sparse::SparseFitter& patches,
                           float spacing_m, const sparse::Options& options, int threads);
 

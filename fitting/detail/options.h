@@ -9,7 +9,7 @@
 namespace sheen::fitting::detail {
 
 /// Where the model keeps how colours change with the direction.
-enum class Directions { vertex, anchors };
+enum class OffsetPlaces { vertex, anchors };
 
 /// How a texture and patches are fitted.
 struct Options {
@@ -18,9 +18,9 @@ struct Options {
   /// diagonal; who knows the camera gives what a pixel covers.
   std::optional<float> texel_mm{};
   /// While views arrive it is the vertices.
-  Directions directions = Directions::vertex;
+  OffsetPlaces offsets = OffsetPlaces::vertex;
   /// Distance of anchors, texels, > 0.
-  double anchor_px = 4;
+  double anchor_px = 6;
 
   /// Throws std::invalid_argument naming the option and its allowed values.
   void check() const;

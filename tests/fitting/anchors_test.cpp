@@ -48,7 +48,7 @@ std::vector<int> first(int count) {
 std::unique_ptr<Fitter> make(const core::Mesh& mesh, const std::string& anchor_px,
                              int threads = 1) {
   return make_fitter("detail", mesh,
-                     {{"texel-mm", "1.3"}, {"directions", "anchors"}, {"anchor-px", anchor_px}},
+                     {{"texel-mm", "1.3"}, {"offsets", "anchors"}, {"anchor-px", anchor_px}},
                      threads);
 }
 
