@@ -180,7 +180,7 @@ TEST(Anchors, ThreadsDoNotChangeABit) {
   EXPECT_EQ(one, testing::bytes_of(finished(views, "10", 8)->light_field()));
 }
 
-// They are fewer numbers than vertices have, and predict what those predict.
+// 20 texels of 1.3 mm are wider than the 20 mm between vertices: fewer models.
 TEST(Anchors, TakeFewerBytesThanVertices) {
   const Photographs& views = glossy_sphere();
   auto plain = make_fitter("detail", views.mesh(), {{"texel-mm", "1.3"}});
