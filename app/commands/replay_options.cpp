@@ -6,6 +6,7 @@
 #include "core/text/number.h"
 #include "fitting/descriptor.h"
 
+#include <algorithm>
 #include <charconv>
 #include <memory>
 #include <optional>
@@ -39,6 +40,15 @@ std::string word_for(const std::vector<std::pair<std::string, Value>>& words, co
   return {};
 }
 
+/// Whether one of the options is not of patches at vertices: it asks for the texture.
+bool asks_texture(const fitting::OptionValues& values) {
+  const auto options = fitting::representation_named(kVertexPatches).default_options();
+  const fitting::OptionTable known = options->table();
+  return std::ranges::any_of(values, [&](const auto& value) {
+    return std::ranges::find(known, value.first, &fitting::FitOption::name) == known.end();
+  });
+}
+
 /// Representation and patches from what was said of them. A texture and patches at vertices are one
 /// representation each, so --patches chooses between them where --representation is not given; and
 /// a state holds samples, of which no texture can be made.
@@ -59,10 +69,10 @@ void reconcile_patches(const RepresentationChoice& choice, const std::optional<P
     throw UsageError("--patches " + word_for(kPatches, std::optional(patches)) +
                      " contradicts --representation " + fit.representation);
   }
-  fit.patches = patches != Patches::automatic ? patches
-                : !has_texture                ? Patches::vertex
-                : is_free                     ? Patches::automatic
-                                              : Patches::detail;
+  fit.patches = patches != Patches::automatic       ? patches
+                : !has_texture                      ? Patches::vertex
+                : is_free && !asks_texture(fit.fit) ? Patches::automatic
+                                                    : Patches::detail;
 }
 
 core::PatchShare share_from(const std::string& text) {

@@ -212,6 +212,11 @@ PatchTexels sparse_texels(const core::Mesh& /*mesh*/, const fitting::LightField&
 PatchTexels detail_texels(const core::Mesh& mesh, const fitting::LightField& light_field) {
   using fitting::detail::DetailLightField;
   const auto& detail = dynamic_cast<const DetailLightField&>(light_field);
+  if (detail.anchors()) {
+    throw core::bad_input("the model",
+                          "has its directions at anchors, which the web viewer does not draw",
+                          "fit with --offsets vertex");
+  }
   auto [texels, offsets] = rounded_patches(detail.offsets());
   texels.rounded = std::make_unique<DetailLightField>(mesh, detail.texture(), std::move(offsets));
   return std::move(texels);

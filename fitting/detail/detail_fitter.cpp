@@ -6,6 +6,7 @@
 #include "core/mesh/bounds.h"
 #include "core/mesh/neighbours.h"
 #include "fitting/detail/detail_light_field.h"
+#include "fitting/detail/fit_anchors.h"
 #include "fitting/detail/patch_means.h"
 #include "fitting/detail/simplify_texture.h"
 #include "fitting/detail/texel_means.h"
@@ -42,10 +43,19 @@ core::Atlas atlas_of(const core::Mesh& mesh, const Options& options) {
                     "join its vertices, or use --patches vertex");
 }
 
+/// Colours at the vertices, interpolated.
+Eigen::Vector3f between(const std::vector<Eigen::Vector3f>& at_vertices,
+                        const Eigen::Matrix<std::uint32_t, 3, 1>& triangle,
+                        const SurfaceTexel& texel) {
+  return (1.0f - texel.at_second - texel.at_third) * at_vertices[triangle[0]] +
+         texel.at_second * at_vertices[triangle[1]] + texel.at_third * at_vertices[triangle[2]];
+}
+
 class DetailFitter final : public Fitter {
  public:
   DetailFitter(const core::Mesh& mesh, const Options& options, int threads)
       : mesh_(mesh),
+        options_(options),
         threads_(threads),
         tolerance_(options.patches.tolerance.value_or(sparse::kToleranceOfUnknownNoise)),
         patches_(
@@ -65,12 +75,16 @@ class DetailFitter final : public Fitter {
  private:
   void store_offsets(std::span<const std::uint32_t> changed);
   void store_offset(std::uint32_t patch);
+  void store_all_offsets();
+  void back_to_vertices();
+  void move_to_anchors(Planes& planes);
   [[nodiscard]] Planes starting_texture() const;
   [[nodiscard]] std::vector<float> texel_weights() const;
   [[nodiscard]] float noise() const;
   void store_texture(const Planes& planes);
 
   const core::Mesh& mesh_;
+  Options options_;
   int threads_;
   float tolerance_;
   std::unique_ptr<sparse::SparseFitter> patches_;
@@ -85,6 +99,7 @@ class DetailFitter final : public Fitter {
 };
 
 const ModelUpdate& DetailFitter::integrate(const core::Observation& observation) {
+  const bool leaves_anchors = model_.anchors() != nullptr;
   raster_.set_view(observation);
   texel_means_.integrate(observation, raster_, model_.texture());
   texture_sums_.integrate(observation, raster_);
@@ -92,6 +107,7 @@ const ModelUpdate& DetailFitter::integrate(const core::Observation& observation)
   vertex_means_.average(raster_, texel_means_.corners(), samples_);
   patch_means_.integrate(samples_);
   store_offsets(patches_->PatchFitter::integrate(samples_).elements);
+  if (leaves_anchors) back_to_vertices();
   for (const std::uint32_t page : texel_means_.touched_pages()) {
     update_.elements.push_back(static_cast<std::uint32_t>(model_.patch_count()) + page);
   }
@@ -123,12 +139,42 @@ void DetailFitter::store_offset(std::uint32_t patch) {
   model_.offsets().store_observed(patch, patches_->light_field().observed()[patch] != 0);
 }
 
+/// After `finish` has left them for anchors; all have changed.
+void DetailFitter::back_to_vertices() {
+  model_.set_anchors(nullptr);
+  store_all_offsets();
+  update_.elements.resize(model_.patch_count());
+  std::iota(update_.elements.begin(), update_.elements.end(), 0u);
+}
+
+void DetailFitter::store_all_offsets() {
+  for (std::uint32_t patch = 0; patch < model_.patch_count(); ++patch) store_offset(patch);
+}
+
+/// Offsets at anchors in place of those at vertices, and their means out of the texture.
+void DetailFitter::move_to_anchors(Planes& planes) {
+  const FittedAnchors fitted = fit_anchors(
+      mesh_, *patches_, static_cast<float>(options_.anchor_px) * texel_m(mesh_, options_),
+      options_.patches, threads_);
+  model_.offsets() = no_offsets(model_.observed());
+  model_.set_anchors(fitted.offsets);
+  for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
+    for (const SurfaceTexel& texel : texel_means_.surface().of(t)) {
+      const Eigen::Vector3f mean = between(fitted.mean, mesh_.triangles[t], texel);
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        planes[channel][texel.texel_idx] -= 255.0f * mean[static_cast<Eigen::Index>(channel)];
+      }
+    }
+  }
+}
+
 const ModelUpdate& DetailFitter::finish() {
   patches_->finish();
-  for (std::uint32_t patch = 0; patch < model_.patch_count(); ++patch) store_offset(patch);
+  store_all_offsets();
   Planes planes = starting_texture();
   solve_texture(texture_sums_.texels(), static_cast<std::size_t>(model_.texture().atlas().width),
                 mesh_, texel_means_.surface(), threads_, planes);
+  if (options_.offsets == OffsetPlaces::anchors) move_to_anchors(planes);
   model_.texture().set_texel_count(
       simplify_texture(model_.texture().atlas(), texel_weights(), noise(), threads_, planes));
   store_texture(planes);
@@ -145,15 +191,12 @@ Planes DetailFitter::starting_texture() const {
     at_vertices[patch] = 255.0f * patches_->light_field().mean_colour(patch);
   }
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-    const auto& triangle = mesh_.triangles[t];
     const WeightedMean* next = texel_means_.of(t).data();
     for (const SurfaceTexel& texel : texel_means_.surface().of(t)) {
       const WeightedMean& mean = *next++;
       const bool seen_around = texture_sums_.texels()[texel.texel_idx].weight > 0;
       if (mean.weight == 0 && seen_around) continue;
-      const Eigen::Vector3f around =
-          (1.0f - texel.at_second - texel.at_third) * at_vertices[triangle[0]] +
-          texel.at_second * at_vertices[triangle[1]] + texel.at_third * at_vertices[triangle[2]];
+      const Eigen::Vector3f around = between(at_vertices, mesh_.triangles[t], texel);
       for (std::size_t channel = 0; channel < 3; ++channel) {
         planes[channel][texel.texel_idx] =
             mean.weight > 0 ? mean.mean(channel) : around[static_cast<Eigen::Index>(channel)];

@@ -6,18 +6,32 @@
 namespace sheen::fitting::detail {
 namespace {
 
-sparse::LightFieldModel no_offsets(std::size_t patch_count) {
-  sparse::LightFieldModel offsets(patch_count);
-  sparse::PatchModel zero;
-  zero.coefficient[0].setZero();
-  for (std::size_t patch = 0; patch < patch_count; ++patch) offsets.store(patch, zero);
-  return offsets;
+/// Stored numbers; patches of one term are zero and have none.
+std::size_t numbers_of(const sparse::LightFieldModel& offsets) {
+  std::size_t count = 0;
+  for (std::size_t patch = 0; patch < offsets.patch_count(); ++patch) {
+    const sparse::PatchModel offset = offsets.patch(patch);
+    if (offset.term_count() > 1) count += 3 * offset.term_count() + offset.rbf_count;
+  }
+  return count;
 }
 
 }  // namespace
 
+sparse::LightFieldModel no_offsets(std::span<const std::uint8_t> observed) {
+  sparse::LightFieldModel offsets(observed.size());
+  sparse::PatchModel zero;
+  zero.coefficient[0].setZero();
+  for (std::size_t patch = 0; patch < observed.size(); ++patch) {
+    offsets.store(patch, zero);
+    offsets.store_observed(patch, observed[patch] != 0);
+  }
+  return offsets;
+}
+
 DetailLightField::DetailLightField(const core::Mesh& mesh, core::Atlas atlas)
-    : DetailLightField(mesh, SurfaceTexture(std::move(atlas)), no_offsets(mesh.positions.size())) {}
+    : DetailLightField(mesh, SurfaceTexture(std::move(atlas)),
+                       no_offsets(std::vector<std::uint8_t>(mesh.positions.size(), 0))) {}
 
 DetailLightField::DetailLightField(const core::Mesh& mesh, SurfaceTexture texture,
                                    sparse::LightFieldModel offsets)
@@ -44,12 +58,8 @@ Eigen::Vector3f DetailLightField::mean_colour(std::size_t patch_idx) const {
 
 std::size_t DetailLightField::coefficient_count() const {
   const TexelCount& texels = texture_.texel_count();
-  std::size_t count = 3 * (texels.offered > 0 ? texels.stored : texture_.texels().size());
-  for (std::size_t patch = 0; patch < patch_count(); ++patch) {
-    const sparse::PatchModel offset = offsets_.patch(patch);
-    if (offset.term_count() > 1) count += 3 * offset.term_count() + offset.rbf_count;
-  }
-  return count;
+  const std::size_t colours = texels.offered > 0 ? texels.stored : texture_.texels().size();
+  return 3 * colours + numbers_of(offsets_) + (anchors_ ? numbers_of(anchors_->models()) : 0);
 }
 
 }  // namespace sheen::fitting::detail

@@ -3,6 +3,7 @@
 
 #include "core/atlas/atlas.h"
 #include "core/mesh/mesh.h"
+#include "fitting/detail/anchored_offsets.h"
 #include "fitting/patch_light_field.h"
 #include "fitting/sparse/light_field_model.h"
 #include "fitting/texture/surface_texture.h"
@@ -12,13 +13,20 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace sheen::fitting::detail {
 
+/// Patches that say nothing, one for each of the flags, which say whether it was observed.
+sparse::LightFieldModel no_offsets(std::span<const std::uint8_t> observed);
+
 /// A light field of two parts that are added up: a texture, the mean colour of every place, and
-/// patches (one per vertex), how the colour differs from it towards every direction.
+/// how the colour differs from it towards every direction: patches, one per vertex, or blended from
+/// anchors.
 class DetailLightField final : public PatchLightField {
  public:
   /// Mid grey, and the same towards every direction. `atlas` is one of `mesh`.
@@ -32,7 +40,9 @@ class DetailLightField final : public PatchLightField {
                                         const Eigen::Vector2f& uv) const override;
   [[nodiscard]] WeightedColour interpolated_part(std::size_t patch_idx,
                                                  const Eigen::Vector2f& uv) const override {
-    return offsets_.evaluate(patch_idx, uv);
+    WeightedColour offset = offsets_.evaluate(patch_idx, uv);
+    if (anchors_) offset.colour_sum += offset.weight_sum * anchors_->colour(patch_idx, uv);
+    return offset;
   }
   [[nodiscard]] Eigen::Vector3f mean_colour(std::size_t patch_idx) const override;
   [[nodiscard]] const std::vector<std::uint8_t>& observed() const override {
@@ -50,10 +60,16 @@ class DetailLightField final : public PatchLightField {
   [[nodiscard]] SurfaceTexture& texture() { return texture_; }
   [[nodiscard]] const sparse::LightFieldModel& offsets() const { return offsets_; }
   [[nodiscard]] sparse::LightFieldModel& offsets() { return offsets_; }
+  /// Added to the offsets, which are zero then; null: none.
+  [[nodiscard]] const std::shared_ptr<const AnchoredOffsets>& anchors() const { return anchors_; }
+  void set_anchors(std::shared_ptr<const AnchoredOffsets> anchors) {
+    anchors_ = std::move(anchors);
+  }
 
  private:
   SurfaceTexture texture_;
   sparse::LightFieldModel offsets_;
+  std::shared_ptr<const AnchoredOffsets> anchors_;
   std::vector<Eigen::Vector2f> place_;  ///< of every vertex on the atlas, one of them
 };
 

@@ -12,6 +12,10 @@ void Options::check() const {
     throw std::invalid_argument("texel-mm is " + std::to_string(*texel_mm) +
                                 ", it must be positive");
   }
+  if (!(anchor_px > 0)) {
+    throw std::invalid_argument("anchor-px is " + std::to_string(anchor_px) +
+                                ", it must be positive");
+  }
 }
 
 OptionTable option_table(Options& options) {
@@ -19,6 +23,13 @@ OptionTable option_table(Options& options) {
   table.push_back(number_option(kTexelOption, options.texel_mm, kLeastTexel_mm, kMostTexel_mm,
                                 "Side of a texel on the surface, mm (default: what a pixel covers "
                                 "there)"));
+  table.push_back(choice_option<OffsetPlaces>(
+      "offsets", options.offsets,
+      {{"vertex", OffsetPlaces::vertex}, {"anchors", OffsetPlaces::anchors}},
+      "Where the model keeps how colours change with the direction: at every vertex, or at anchors "
+      "between which vertices blend; fewer bytes, most often less accurate"));
+  table.push_back(number_option("anchor-px", options.anchor_px, kLeastAnchor_px, kMostAnchor_px,
+                                "With --offsets anchors: their distance, texels"));
   return table;
 }
 

@@ -95,9 +95,8 @@ ModelPart encode_patches(const LightFieldModel& model, SingleColours single_colo
   return part;
 }
 
-LightFieldModel decode_patches(const ModelPart& part, const core::Mesh& mesh,
+LightFieldModel decode_patches(const ModelPart& part, std::span<const std::uint8_t> observed,
                                SingleColours single_colours) {
-  auto observed = required_observed(part, mesh.positions.size());
   if (required(part.parameters, "atoms") != atoms_as_json()) {
     throw ModelFault("its \"atoms\" are not those of this version of sheen");
   }
@@ -137,7 +136,8 @@ ModelPart encode_model(const LightField& light_field) {
 }
 
 std::unique_ptr<const LightField> decode_model(const ModelPart& part, const core::Mesh& mesh) {
-  return std::make_unique<LightFieldModel>(decode_patches(part, mesh, SingleColours::stored));
+  return std::make_unique<LightFieldModel>(
+      decode_patches(part, required_observed(part, mesh.positions.size()), SingleColours::stored));
 }
 
 }  // namespace sheen::fitting::sparse

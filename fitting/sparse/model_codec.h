@@ -6,7 +6,9 @@
 #include "fitting/model_file/model_part.h"
 #include "fitting/sparse/light_field_model.h"
 
+#include <cstdint>
 #include <memory>
+#include <span>
 
 namespace sheen::fitting::sparse {
 
@@ -18,7 +20,8 @@ enum class SingleColours { stored, zero };
 /// "bumps", an unsigned 16-bit number per RBF: its atom (left out when there are none);
 /// "coefficients", half floats [term][r, g, b], base first (left out when there are none).
 ModelPart encode_patches(const LightFieldModel& model, SingleColours single_colours);
-LightFieldModel decode_patches(const ModelPart& part, const core::Mesh& mesh,
+/// A patch for each of the flags, which say whether it was observed.
+LightFieldModel decode_patches(const ModelPart& part, std::span<const std::uint8_t> observed,
                                SingleColours single_colours);
 
 /// The same as a model's only part; all colours are stored.

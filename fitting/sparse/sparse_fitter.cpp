@@ -77,6 +77,7 @@ class SparsePatches final : public SparseFitter {
   [[nodiscard]] std::optional<float> predicted_error(std::size_t patch_idx,
                                                      const Eigen::Vector2f& uv) const override;
   [[nodiscard]] Eigen::Vector3f mean_over_views(std::size_t patch_idx) const override;
+  [[nodiscard]] std::vector<KeptSample> samples_of(std::size_t patch_idx) const override;
 
  private:
   void update_tolerance();
@@ -295,6 +296,16 @@ std::optional<float> SparsePatches::predicted_error(std::size_t patch_idx,
 
 Eigen::Vector3f SparsePatches::mean_over_views(std::size_t patch_idx) const {
   return sparse::mean_over_views(model_.patch(patch_idx), states_[patch_idx].samples, pool_);
+}
+
+std::vector<KeptSample> SparsePatches::samples_of(std::size_t patch_idx) const {
+  const SampleStore& samples = states_[patch_idx].samples;
+  std::vector<KeptSample> kept(samples.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const DirectedColour sample = samples.at(i, pool_);
+    kept[i] = {sample, samples.count(i, pool_) * std::max(0.0f, 1.0f - sample.uv.squaredNorm())};
+  }
+  return kept;
 }
 
 }  // namespace

@@ -5,10 +5,19 @@
 #include "fitting/patch_fitter.h"
 #include "fitting/sparse/light_field_model.h"
 #include "fitting/sparse/options.h"
+#include "fitting/sparse/sample_store.h"
 
+#include <cstddef>
 #include <memory>
+#include <vector>
 
 namespace sheen::fitting::sparse {
+
+/// A sample as it is kept.
+struct KeptSample {
+  DirectedColour sample;
+  float weight;  ///< samples that were averaged into it times the squared cosine
+};
 
 /// A fitter of sparse patches.
 class SparseFitter : public PatchFitter {
@@ -18,6 +27,9 @@ class SparseFitter : public PatchFitter {
   /// Mean colour that a patch's model has towards the views it was seen from, weighted with the
   /// squared cosines at which they saw it; zero for a patch never seen.
   [[nodiscard]] virtual Eigen::Vector3f mean_over_views(std::size_t patch_idx) const = 0;
+
+  /// What the views showed of a patch, at most kMaxStoredSamples of it.
+  [[nodiscard]] virtual std::vector<KeptSample> samples_of(std::size_t patch_idx) const = 0;
 };
 
 /// Patches with as many terms as their samples ask for: one colour, a linear base, RBFs

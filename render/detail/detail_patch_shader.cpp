@@ -2,7 +2,9 @@
 #include "render/detail/detail_patch_shader.h"
 
 #include "fitting/detail/detail_light_field.h"
+#include "render/detail/anchor_upload.h"
 #include "render/detail/texture_upload.h"
+#include "render/shaders/shader_text.h"
 #include "render/sparse/sparse_patch_shader.h"
 
 #include <algorithm>
@@ -19,9 +21,15 @@ class DetailPatchShader final : public PatchShader {
   DetailPatchShader(const gl::Functions& gl, const DetailLightField& model)
       : model_(model),
         offsets_(sparse::make_patch_shader(gl, model.offsets())),
-        texture_(gl, model.texture()) {}
+        anchors_(gl),
+        texture_(gl, model.texture()) {
+    anchors_.show(model.anchors());
+  }
 
-  [[nodiscard]] std::string glsl() const override { return offsets_->glsl(); }
+  [[nodiscard]] std::string glsl() const override {
+    return "#define evaluate_patch evaluate_offset\n" + offsets_->glsl() +
+           "#undef evaluate_patch\n" + std::string(shader_text("detail/detail.glsl"));
+  }
   [[nodiscard]] const core::Atlas* atlas() const override { return &model_.texture().atlas(); }
 
   std::size_t upload(std::span<const std::uint32_t> elements) override {
@@ -29,6 +37,7 @@ class DetailPatchShader final : public PatchShader {
     const auto pages = std::ranges::lower_bound(elements, first_page);
     const auto patches = static_cast<std::size_t>(pages - elements.begin());
     std::size_t bytes = offsets_->upload(elements.first(patches));
+    bytes += anchors_.show(model_.anchors());
     for (const std::uint32_t element : elements.subspan(patches)) {
       bytes += texture_.send(element - first_page);
     }
@@ -37,12 +46,14 @@ class DetailPatchShader final : public PatchShader {
 
   void bind() const override {
     offsets_->bind();
+    anchors_.bind();
     texture_.bind(kSurfaceTextureUnit);
   }
 
  private:
   const DetailLightField& model_;
   std::unique_ptr<PatchShader> offsets_;
+  AnchorUpload anchors_;
   TextureUpload texture_;
 };
 

@@ -128,6 +128,7 @@ TEST_F(ReplayChoice, ContradictionsAreRefused) {
   expect_refused({"--patches", "texel", "--representation", "detail"}, {"--patches texel"});
   expect_refused({"--patches", "vertex", "--representation", "detail"}, {"--patches vertex"});
   expect_refused({"--patches", "vertex", "--texel-mm", "2"}, {"--texel-mm", "sparse"});
+  expect_refused({"--patches", "vertex", "--offsets", "anchors"}, {"--offsets", "sparse"});
   expect_refused({"--representation", "wavelets"}, {"wavelets", "sparse"});
 }
 
@@ -144,6 +145,7 @@ TEST_F(ReplayChoice, ReportAndModelNameWhatRan) {
   EXPECT_EQ(expect_fits({"--representation", "mean"}, "mean").at("patches"), "vertex");
   EXPECT_EQ(expect_fits({"--representation", "detail"}, "detail").at("patches"), "detail");
   static_cast<void>(expect_fits({"--texel-mm", "2"}, "detail"));
+  EXPECT_EQ(expect_fits({"--offsets", "anchors"}, "detail").at("patches"), "detail");
 }
 
 // Faithful fits have three terms and no ridge, so they are another model than those with it.

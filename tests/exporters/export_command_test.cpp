@@ -4,12 +4,14 @@
 #include "core/mesh/read_mesh.h"
 #include "exporters/format.h"
 #include "exporters/viewer/first_view.h"
+#include "fitting/detail/detail_light_field.h"
 #include "tests/app/program.h"
 #include "tests/fitting/models_for_tests.h"
 
 #include <gtest/gtest.h>
 #include <opencv2/imgcodecs.hpp>
 
+#include <memory>
 #include <string>
 
 namespace sheen::tests {
@@ -49,6 +51,22 @@ TEST_F(Export, EveryRepresentationThatThePageDrawsBecomesOne) {
     EXPECT_EQ(page.find("<b>"), std::string::npos);
     EXPECT_EQ(page.find("http"), std::string::npos) << "the page must not reach out";
   }
+}
+
+// The page draws offsets at vertices only, and says so; formats that evaluate the model take both.
+TEST_F(Export, DirectionsAtAnchorsAreRefusedByThePage) {
+  namespace detail = fitting::detail;
+  const core::Mesh mesh = fitting::testing::octahedron();
+  detail::DetailLightField model(mesh, core::make_atlas(mesh, 0.01f, std::size_t{1} << 20));
+  const std::vector<std::uint8_t> one(1, 1);
+  model.set_anchors(std::make_shared<const detail::AnchoredOffsets>(
+      mesh, detail::AnchorLayout{{0}, 0.01f}, detail::AskedDirection::same,
+      detail::no_offsets(one)));
+  fitting::write_model(folder_ / "model.glb", mesh, model, seen_);
+  expect_refused({"-o", folder_ / "m.html"}, "--offsets vertex");
+  const ProgramRun run =
+      run_sheen({"export", folder_ / "model.glb", "-o", folder_ / "m.ply", "--quiet"});
+  EXPECT_EQ(run.exit_code, 0) << run.standard_error;
 }
 
 // What is lost is said.

@@ -11,7 +11,9 @@
 #include <opencv2/core.hpp>
 
 #include <algorithm>
+#include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 namespace sheen::render {
@@ -34,6 +36,27 @@ DetailLightField random_detail(const core::Mesh& mesh) {
     model.offsets().store(patch, offset);
     model.offsets().store_observed(patch, patch % 5 != 0);
   }
+  return model;
+}
+
+/// The same with offsets at anchors, at random, too: an eighth of the mesh apart.
+DetailLightField random_anchored(const core::Mesh& mesh, fitting::detail::AskedDirection asked) {
+  using fitting::detail::AnchoredOffsets;
+  std::mt19937 random(kSeed + 1);
+  DetailLightField model = random_detail(mesh);
+  model.offsets() = fitting::detail::no_offsets(model.observed());
+  constexpr float spacing_m = 0.02f;
+  fitting::detail::AnchorLayout layout{fitting::detail::scatter_anchors(mesh, spacing_m),
+                                       spacing_m};
+  const std::vector<std::uint8_t> all(layout.vertices.size(), 1);
+  fitting::sparse::LightFieldModel models = fitting::detail::no_offsets(all);
+  for (std::size_t anchor = 0; anchor < models.patch_count(); ++anchor) {
+    fitting::sparse::PatchModel offset = fitting::testing::random_patch(random, 6);
+    offset.coefficient[0].array() -= 0.5f;
+    if (offset.term_count() > 1) models.store(anchor, offset);
+  }
+  model.set_anchors(
+      std::make_shared<const AnchoredOffsets>(mesh, layout, asked, std::move(models)));
   return model;
 }
 
@@ -66,6 +89,37 @@ TEST(DetailRenderer, GpuEqualsReference) {
               << found.largest << " over " << found.pixels << " pixels\n";
     EXPECT_GT(found.pixels, 3000u) << view.name;
     EXPECT_LE(found.quantile_999, view.most) << view.name;
+  }
+}
+
+// Anchors blend on both sides alike, asked in either direction. A renderer that was made before a
+// model had them shows them after the next upload, and no longer once they are gone.
+TEST(DetailRenderer, AnchorsOnTheGpuEqualTheReference) {
+  const core::Mesh mesh = testing::sphere(0.1f, 20);
+  const auto camera = testing::plain_camera(320, 240);
+  const auto pose = testing::looking_at_origin({1, 0.4, 0.5}, 0.4);
+  const auto context = make_osmesa_context();
+  for (const auto asked :
+       {fitting::detail::AskedDirection::same, fitting::detail::AskedDirection::mirrored}) {
+    DetailLightField model = random_anchored(mesh, asked);
+    const RenderedView gpu = make_gl_surface_renderer(*context, mesh, model)->render(camera, pose);
+    const RenderedView cpu = make_reference_surface_renderer(mesh, model, 1)->render(camera, pose);
+    const cv::Mat interior = testing::common_interior(gpu.mask, cpu.mask, 2);
+    const testing::Difference found = testing::difference(gpu.image, cpu.image, interior);
+    EXPECT_GT(found.pixels, 3000u);
+    EXPECT_LE(found.quantile_999, 1);
+
+    const auto anchors = model.anchors();
+    model.set_anchors(nullptr);
+    const auto renderer = make_gl_surface_renderer(*context, mesh, model);
+    const cv::Mat without = renderer->render(camera, pose).image;
+    model.set_anchors(anchors);
+    EXPECT_GT(renderer->upload({}), 0u);
+    EXPECT_EQ(cv::norm(renderer->render(camera, pose).image, gpu.image, cv::NORM_INF), 0);
+    EXPECT_GT(cv::norm(without, gpu.image, cv::NORM_INF), 20);
+    model.set_anchors(nullptr);
+    renderer->upload({});
+    EXPECT_EQ(cv::norm(renderer->render(camera, pose).image, without, cv::NORM_INF), 0);
   }
 }
 
