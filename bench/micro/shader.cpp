@@ -142,12 +142,12 @@ void draw(benchmark::State& state, const fitting::PatchLightField& model, bool o
   const auto patches = on_cpu
                            ? render::evaluated::make_patch_shader(stage().gl, walk.mesh, model, 1)
                            : render::make_patch_shader(stage().gl, model);
-  render::SurfacePass pass(stage().gl, walk.mesh, patches->glsl());
+  render::SurfacePass pass(stage().gl, walk.mesh, *patches);
   std::size_t view = 0;
   for (auto _ : state) {
     const auto& pose = walk.camera_from_object[view++ % walk.camera_from_object.size()];
     const GLuint target = stage().target.framebuffer(eye.width_px(), eye.height_px());
-    patches->look_from(core::eye_in_object(pose));
+    patches->look_from(core::eye_in_object(pose), {eye.width_px(), eye.height_px()});
     patches->bind();
     pass.draw(target, eye, pose);
     stage().finish();
