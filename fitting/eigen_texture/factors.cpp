@@ -19,9 +19,7 @@ using Eigen::MatrixXf;
 using Eigen::VectorXd;
 using Eigen::VectorXf;
 
-// Squared grey levels. With less, what hardly any view shows hangs on the last digit of where
-// texels lie; with that of 8 bits (1/12) views come back less sharp than they could.
-constexpr float kLeastNoise = 0.01f;
+constexpr float kLeastNoise = 1e-4f;        // squared grey levels
 constexpr double kLeastMeanSquare = 1e-4;   // of a basis that is given out
 constexpr double kRelativeRounding = 1e-9;  // of singular values, squared
 constexpr int kSweeps = 12;
