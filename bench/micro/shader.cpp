@@ -2,11 +2,13 @@
 // Drawing a light field against drawing plain vertex colours, in one context, 1024x768.
 #include "bench/micro/walk.h"
 #include "core/samples/vertex_view.h"
+#include "fitting/eigen_texture/eigen_texture.h"
 #include "fitting/iwls/center_layout.h"
 #include "fitting/iwls/light_field_model.h"
 #include "fitting/mean/mean_light_field.h"
 #include "fitting/sparse/light_field_model.h"
 #include "fitting/spherical_harmonics/light_field_model.h"
+#include "render/eigen_texture/eigen_paint.h"
 #include "render/evaluated/evaluated_patch_shader.h"
 #include "render/gl/offscreen_target.h"
 #include "render/gl/program.h"
@@ -47,7 +49,7 @@ struct Stage {
   // Waits until everything is drawn.
   void finish() const {
     std::array<std::uint8_t, 4> pixel;
-    gl.ReadPixels(512, 384, 1, 1, GL_BGRA, GL_UNSIGNED_BYTE, pixel.data());
+    gl.ReadPixels(0, 0, 1, 1, GL_BGRA, GL_UNSIGNED_BYTE, pixel.data());
     benchmark::DoNotOptimize(pixel);
   }
 };
@@ -142,12 +144,12 @@ void draw(benchmark::State& state, const fitting::PatchLightField& model, bool o
   const auto patches = on_cpu
                            ? render::evaluated::make_patch_shader(stage().gl, walk.mesh, model, 1)
                            : render::make_patch_shader(stage().gl, model);
-  render::SurfacePass pass(stage().gl, walk.mesh, patches->glsl());
+  render::SurfacePass pass(stage().gl, walk.mesh, *patches);
   std::size_t view = 0;
   for (auto _ : state) {
     const auto& pose = walk.camera_from_object[view++ % walk.camera_from_object.size()];
     const GLuint target = stage().target.framebuffer(eye.width_px(), eye.height_px());
-    patches->look_from(core::eye_in_object(pose));
+    patches->look_from(core::eye_in_object(pose), {eye.width_px(), eye.height_px()});
     patches->bind();
     pass.draw(target, eye, pose);
     stage().finish();
@@ -165,6 +167,27 @@ fitting::iwls::LightFieldModel iwls_model(int centers) {
   fitting::iwls::LightFieldModel model({layout.layout, layout.centers, 3, radius}, patch_count());
   for (std::size_t i = 0; i < patch_count(); ++i) model.store_observed(i, true);
   return model;
+}
+
+// Twenty luma bases of about 256 x 256 texels, summed at the texels.
+void eigen_texture(benchmark::State& state) {
+  constexpr std::size_t bases = 20, side = 256;
+  const bench::Walk& walk = bench::walk_round(kVertices);
+  fitting::eigen_texture::EigenTexture model(walk.mesh,
+                                             core::make_atlas(walk.mesh, 5e-4f, side * side));
+  std::mt19937 random(1);
+  const std::vector<Eigen::Vector3f> directions{Eigen::Vector3f::UnitZ()};
+  fitting::eigen_texture::Channel luma{bases, std::vector<std::int8_t>(bases * model.used().size()),
+                                       std::vector<Eigen::half>(bases, Eigen::half(0.1f))};
+  for (auto& one : luma.texels) one = static_cast<std::int8_t>(random() % 255 - 127);
+  model.set_bases({std::move(luma), {}, {}}, directions);
+  const auto paint = render::eigen_texture::make_eigen_paint(stage().gl, model);
+  for (auto _ : state) {
+    paint->look_from(Eigen::Vector3f::UnitZ(), {1024, 768});
+    stage().finish();
+  }
+  state.SetItemsProcessed(state.iterations() *
+                          static_cast<std::int64_t>(bases * model.mean().atlas().texel_count()));
 }
 
 void mean(benchmark::State& state) {
@@ -213,6 +236,7 @@ SHEEN_DRAWING(mean);
 SHEEN_DRAWING(harmonics);
 SHEEN_DRAWING(sparse);
 SHEEN_DRAWING(quadtree)->Arg(16)->Arg(64);
+SHEEN_DRAWING(eigen_texture);
 SHEEN_DRAWING(quadtree_on_cpu)->Arg(16)->Arg(64);
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace sheen::fitting {
 namespace {
@@ -37,6 +38,34 @@ void grey_background(const cv::Mat& depth_m, cv::Mat& image) {
   }
 }
 
+/// Continues the object's colours over what lies beside it, so that drawing a little more than the
+/// object shows no background. Its outermost pixels, which mix both, are not continued except where
+/// it is no thicker; they stay as they are, like all of its pixels.
+void continue_object(const cv::Mat& depth_m, cv::Mat& image) {
+  const cv::Mat square = cv::getStructuringElement(cv::MORPH_RECT, {3, 3});
+  const cv::Mat object = depth_m > 0.0f;
+  cv::Mat inner, thick;
+  cv::erode(object, inner, square);
+  cv::dilate(inner, thick, square);
+  const cv::Mat sources = inner | (object & ~thick);
+
+  // Label every pixel by its nearest source, and find these by their labels.
+  cv::Mat distance, label;
+  cv::distanceTransform(~sources, distance, label, cv::DIST_L2, cv::DIST_MASK_5,
+                        cv::DIST_LABEL_PIXEL);
+  std::vector<cv::Vec3b> colour_of(static_cast<std::size_t>(cv::countNonZero(sources)) + 1);
+  const auto visit = [&](const cv::Mat& mask, const auto& at) {
+    for (int y = 0; y < image.rows; ++y) {
+      for (int x = 0; x < image.cols; ++x) {
+        if (mask.at<std::uint8_t>(y, x) == 0) continue;
+        at(colour_of[static_cast<std::size_t>(label.at<int>(y, x))], image.at<cv::Vec3b>(y, x));
+      }
+    }
+  };
+  visit(sources, [](cv::Vec3b& colour, const cv::Vec3b& pixel) { colour = pixel; });
+  visit(~object, [](const cv::Vec3b& colour, cv::Vec3b& pixel) { pixel = colour; });
+}
+
 void refuse_outside(const char* name, int value, int least, int most) {
   if (value >= least && value <= most) return;
   throw std::invalid_argument(std::string(name) + " is " + std::to_string(value) + ", allowed: " +
@@ -60,6 +89,7 @@ KeptView keep_view(const core::Observation& observation, const core::DepthImage&
   assert(!depth.box().empty());
   cv::Mat image;
   observation.image(depth.box()).convertTo(image, CV_8UC3, 1 / observation.gain);
+  continue_object(depth.depth_m(), image);
   grey_background(depth.depth_m(), image);
   return {observation.camera, observation.camera_from_object, depth.box(),
           core::encode_jpeg(image, quality)};

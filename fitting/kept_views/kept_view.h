@@ -29,8 +29,8 @@ struct KeptView {
   [[nodiscard]] Eigen::Vector3d eye() const;
 };
 
-/// Keeps the pixels within `depth.box()`, which is not empty; what is far from the object is greyed
-/// where that leaves the object's own pixels alone. `quality` of the JPEG in [1, 100].
+/// Keeps the object's pixels within `depth.box()`, which is not empty. Beside it its colours are
+/// continued, far from it all is grey. `quality` of the JPEG in [1, 100].
 KeptView keep_view(const core::Observation& observation, const core::DepthImage& depth,
                    int quality);
 

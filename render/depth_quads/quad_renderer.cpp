@@ -35,6 +35,15 @@ struct DecodedPhotograph {
   }
 };
 
+/// Where a pixel's ray r meets a quad: its products with normal, to_a and to_b.
+struct Meeting {
+  float across, along_a, along_b;
+
+  [[nodiscard]] float inverse_depth(const ScreenQuad& quad) const {
+    return across * quad.per_volume;
+  }
+};
+
 class QuadRenderer final : public Renderer {
  public:
   QuadRenderer(const DepthQuads& quads, int threads)
@@ -58,7 +67,7 @@ class QuadRenderer final : public Renderer {
 
   const DecodedPhotograph& decoded(std::size_t photograph_idx);
   [[nodiscard]] std::vector<Sheet> sheets_for(const QuadCamera& viewer);
-  /// Calls `visit(quad, x, y, a, b, inverse_depth)` for all pixels that see a quad of the sheet.
+  /// Calls `visit(quad, x, y, met)` for all pixels that see a quad of the sheet.
   template <typename Visit>
   void for_each_pixel(const Sheet& sheet, int rows, const Visit& visit) const;
   void find_nearest(const Sheet& sheet);
@@ -109,12 +118,12 @@ void QuadRenderer::for_each_pixel(const Sheet& sheet, int rows, const Visit& vis
             for (int x = quad.left; x <= quad.right; ++x) {
               const Eigen::Vector3f ray(ray_x[static_cast<std::size_t>(x)],
                                         ray_y[static_cast<std::size_t>(x)], 1.0f);
-              const float across = ray.dot(quad.normal);
-              const float a = ray.dot(quad.to_a) / across;
-              const float b = ray.dot(quad.to_b) / across;
+              const Meeting met{ray.dot(quad.normal), ray.dot(quad.to_a), ray.dot(quad.to_b)};
               // Written so that a ray that is none sees nothing.
-              if (!(a >= 0.0f && a <= 1.0f && b >= 0.0f && b <= 1.0f)) continue;
-              visit(quad, x, y, a, b, across * quad.per_volume);
+              if (std::min(met.along_a, met.along_b) >= 0.0f &&
+                  std::max(met.along_a, met.along_b) <= met.across) {
+                visit(quad, x, y, met);
+              }
             }
           }
         }
@@ -122,48 +131,50 @@ void QuadRenderer::for_each_pixel(const Sheet& sheet, int rows, const Visit& vis
       kRows);
 }
 
-Eigen::Vector3f colour_at(const DecodedPhotograph& photograph, const ScreenQuad& quad, float a,
-                          float b) {
-  return read_between(photograph.pixels, quad.first_x + a * quad.side_px,
-                      quad.first_y + b * quad.side_px);
+Eigen::Vector3f colour_at(const DecodedPhotograph& photograph, const ScreenQuad& quad,
+                          const Meeting& met) {
+  const float scale = quad.side_px / met.across;
+  return read_between(photograph.pixels, quad.first_x + scale * met.along_a,
+                      quad.first_y + scale * met.along_b);
+}
+
+/// Of a colour within [0, 255].
+std::uint8_t rounded(float grey) {
+  return static_cast<std::uint8_t>(grey + 0.5f);
 }
 
 void QuadRenderer::find_nearest(const Sheet& sheet) {
   for_each_pixel(sheet, inverse_depth_.rows,
-                 [&](const ScreenQuad& quad, int x, int y, float, float, float inverse_depth) {
+                 [&](const ScreenQuad& quad, int x, int y, const Meeting& met) {
                    if (quad.is_flier) return;
                    auto& nearest = inverse_depth_.at<float>(y, x);
-                   nearest = std::max(nearest, inverse_depth);
+                   nearest = std::max(nearest, met.inverse_depth(quad));
                  });
 }
 
 void QuadRenderer::paint_nearest(const Sheet& sheet, cv::Mat& image) {
   const DecodedPhotograph& photograph = decoded(sheet.photograph_idx);
-  for_each_pixel(sheet, image.rows,
-                 [&](const ScreenQuad& quad, int x, int y, float a, float b, float inverse_depth) {
-                   auto& nearest = inverse_depth_.at<float>(y, x);
-                   if (inverse_depth <= nearest) return;
-                   nearest = inverse_depth;
-                   const Eigen::Vector3f colour = colour_at(photograph, quad, a, b);
-                   auto& pixel = image.at<cv::Vec3b>(y, x);
-                   for (int c = 0; c < 3; ++c) {
-                     pixel[c] = static_cast<std::uint8_t>(std::lround(colour[c]));
-                   }
-                 });
+  for_each_pixel(sheet, image.rows, [&](const ScreenQuad& quad, int x, int y, const Meeting& met) {
+    auto& nearest = inverse_depth_.at<float>(y, x);
+    if (met.inverse_depth(quad) <= nearest) return;
+    nearest = met.inverse_depth(quad);
+    const Eigen::Vector3f colour = colour_at(photograph, quad, met);
+    auto& pixel = image.at<cv::Vec3b>(y, x);
+    for (int c = 0; c < 3; ++c) pixel[c] = rounded(colour[c]);
+  });
 }
 
 void QuadRenderer::add_near(const Sheet& sheet, cv::Mat& sums) {
   const DecodedPhotograph& photograph = decoded(sheet.photograph_idx);
-  for_each_pixel(sheet, sums.rows,
-                 [&](const ScreenQuad& quad, int x, int y, float a, float b, float inverse_depth) {
-                   const float nearest = inverse_depth_.at<float>(y, x);
-                   if (inverse_depth * (1.0f + quad.tolerance) < nearest) return;
-                   const Eigen::Vector3f colour = colour_at(photograph, quad, a, b);
-                   auto& sum = sums.at<cv::Vec4f>(y, x);
-                   const float weight = sheet.share * quad.weight;
-                   for (int c = 0; c < 3; ++c) sum[c] += weight * colour[c];
-                   sum[3] += weight;
-                 });
+  for_each_pixel(sheet, sums.rows, [&](const ScreenQuad& quad, int x, int y, const Meeting& met) {
+    const float nearest = inverse_depth_.at<float>(y, x);
+    if (met.inverse_depth(quad) * (1.0f + quad.tolerance) < nearest) return;
+    const Eigen::Vector3f colour = colour_at(photograph, quad, met);
+    auto& sum = sums.at<cv::Vec4f>(y, x);
+    const float weight = sheet.share * quad.weight;
+    for (int c = 0; c < 3; ++c) sum[c] += weight * colour[c];
+    sum[3] += weight;
+  });
 }
 
 /// Gives the mask of what has a colour.
@@ -174,7 +185,7 @@ cv::Mat divide(const cv::Mat& sums, cv::Mat& image) {
       const auto& sum = sums.at<cv::Vec4f>(y, x);
       if (!(sum[3] > 0.0f)) continue;
       for (int c = 0; c < 3; ++c) {
-        image.at<cv::Vec3b>(y, x)[c] = static_cast<std::uint8_t>(std::lround(sum[c] / sum[3]));
+        image.at<cv::Vec3b>(y, x)[c] = rounded(sum[c] / sum[3]);
       }
       mask.at<std::uint8_t>(y, x) = 255;
     }

@@ -124,10 +124,11 @@ std::optional<ScreenQuad> screen_quad(const Sheet& sheet, int i, int j) {
   const Eigen::Vector3d normal = U.cross(V) / (depth_m * depth_m);
   const double volume = P0.dot(normal);
   if (!(std::abs(volume) > 0)) return std::nullopt;
-  quad.normal = normal.cast<float>();
-  quad.to_a = (V.cross(P0) / (depth_m * depth_m)).cast<float>();
-  quad.to_b = (P0.cross(U) / (depth_m * depth_m)).cast<float>();
-  quad.per_volume = static_cast<float>(1 / volume);
+  const double scale = std::copysign(1 / (depth_m * depth_m), volume);
+  quad.normal = (scale * U.cross(V)).cast<float>();
+  quad.to_a = (scale * V.cross(P0)).cast<float>();
+  quad.to_b = (scale * P0.cross(U)).cast<float>();
+  quad.per_volume = static_cast<float>(1 / std::abs(volume));
   quad.first_x = static_cast<float>(i * level.spacing_px - 0.5 - sheet.enlargement_px);
   quad.first_y = static_cast<float>(j * level.spacing_px - 0.5 - sheet.enlargement_px);
   quad.side_px = static_cast<float>(side_px);

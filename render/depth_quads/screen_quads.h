@@ -15,11 +15,12 @@ namespace sheen::render {
 
 /// A quad P0 + a U + b V, a and b in [0, 1], as a camera sees it. The ray r = (x, y, 1) of a pixel
 /// meets its plane where r . to_a = a * r . normal and r . to_b = b * r . normal, with
-/// normal = U x V, to_a = V x P0, to_b = P0 x U (Cramer's rule); there
-/// 1 / depth = r . normal / (P0 . normal). So every pixel is exact, whatever the lens.
+/// normal = U x V, to_a = V x P0, to_b = P0 x U (Cramer's rule), all three negated where P0 .
+/// normal is negative; there 1 / depth = r . normal / |P0 . normal|. So every pixel is exact,
+/// whatever the lens, and one that does not see the quad is known by three products.
 struct ScreenQuad {
   Eigen::Vector3f normal, to_a, to_b;
-  float per_volume;              ///< 1 / (P0 . normal)
+  float per_volume;              ///< 1 / |P0 . normal|
   float first_x, first_y;        ///< where a = b = 0 lies in the crop of its photograph, pixels
   float side_px;                 ///< of the quad in its photograph
   float tolerance;               ///< depths within this part of another are the same surface's

@@ -3,7 +3,9 @@
 
 #include "core/samples/vertex_view.h"
 #include "fitting/detail/detail_light_field.h"
+#include "render/eigen_texture/eigen_paint.h"
 #include "render/eigen_texture/texture_blender.h"
+#include "render/gl/functions.h"
 #include "render/surface/surface_renderer.h"
 
 #include <numeric>
@@ -69,6 +71,17 @@ class EigenTextureRenderer final : public Renderer {
 }  // namespace
 
 std::unique_ptr<Renderer> make_eigen_texture_renderer(
+    Context& context, const core::Mesh& mesh,
+    const fitting::eigen_texture::EigenTexture& light_field, int threads) {
+  if (gl::is_software(gl::load_functions(context))) {
+    return make_cpu_eigen_texture_renderer(context, mesh, light_field, threads);
+  }
+  return make_painted_renderer(context, mesh, [&](const gl::Functions& gl) {
+    return eigen_texture::make_eigen_paint(gl, light_field);
+  });
+}
+
+std::unique_ptr<Renderer> make_cpu_eigen_texture_renderer(
     Context& context, const core::Mesh& mesh,
     const fitting::eigen_texture::EigenTexture& light_field, int threads) {
   return std::make_unique<EigenTextureRenderer>(context, mesh, light_field, threads);

@@ -44,7 +44,7 @@ class EvaluatedPatchShader final : public PatchShader {
     return 0;
   }
 
-  void look_from(const Eigen::Vector3f& eye) override {
+  void look_from(const Eigen::Vector3f& eye, const cv::Size& /*image_px*/) override {
     // Nothing moved and nothing changed: the buffer still holds.
     if (eye_ && *eye_ == eye) return;
     core::parallel_for(texels_.size(), threads_, [&](std::size_t begin, std::size_t end) {

@@ -3,6 +3,10 @@
 
 #include "core/diagnostics/error.h"
 
+#include <algorithm>
+#include <array>
+#include <string_view>
+
 namespace sheen::render::gl {
 namespace {
 
@@ -30,6 +34,14 @@ GLint integer_limit(const Functions& gl, GLenum name) {
   GLint value = 0;
   gl.GetIntegerv(name, &value);
   return value;
+}
+
+bool is_software(const Functions& gl) {
+  const auto* const bytes = gl.GetString(GL_RENDERER);
+  const std::string_view name = bytes ? reinterpret_cast<const char*>(bytes) : "";
+  return std::ranges::any_of(
+      std::array<std::string_view, 3>{"llvmpipe", "softpipe", "swrast"},
+      [&](std::string_view one) { return name.find(one) != std::string_view::npos; });
 }
 
 }  // namespace sheen::render::gl

@@ -46,6 +46,7 @@ namespace sheen::render::gl {
   X(PFNGLGETPROGRAMIVPROC, GetProgramiv)                               \
   X(PFNGLGETSHADERINFOLOGPROC, GetShaderInfoLog)                       \
   X(PFNGLGETSHADERIVPROC, GetShaderiv)                                 \
+  X(PFNGLGETSTRINGPROC, GetString)                                     \
   X(PFNGLLINKPROGRAMPROC, LinkProgram)                                 \
   X(PFNGLNAMEDBUFFERSTORAGEPROC, NamedBufferStorage)                   \
   X(PFNGLNAMEDBUFFERSUBDATAPROC, NamedBufferSubData)                   \
@@ -81,5 +82,8 @@ Functions load_functions(Context& context);
 
 /// Value of an integer limit such as GL_MAX_TEXTURE_SIZE; the context is current.
 GLint integer_limit(const Functions& gl, GLenum name);
+
+/// Whether the CPU draws (Mesa's rasterisers); the context is current.
+bool is_software(const Functions& gl);
 
 }  // namespace sheen::render::gl

@@ -5,7 +5,6 @@
 layout(location = 1) in vec4 corner_sums;
 #ifdef TEXTURED
 layout(location = 2) in vec2 corner_place;
-layout(binding = SURFACE_TEXTURE_UNIT) uniform sampler2D surface_texture;
 #endif
 layout(location = 0) out vec4 colour;
 
@@ -13,7 +12,7 @@ void main() {
   float alpha = corner_sums.a > 2.0 * UNSEEN_WEIGHT ? 1.0 : 0.5;
   vec3 rgb = corner_sums.rgb / corner_sums.a;
 #ifdef TEXTURED
-  rgb += texture(surface_texture, corner_place).rgb;
+  rgb += surface_texture(corner_place);
 #endif
   colour = vec4(clamp(rgb, 0.0, 1.0), alpha);
 }

@@ -19,15 +19,13 @@ constexpr std::uint8_t kSupported = 255;
 
 class GlSurfaceRenderer final : public Renderer {
  public:
-  GlSurfaceRenderer(Context& context, const core::Mesh& mesh,
-                    const fitting::PatchLightField& light_field, int threads)
+  GlSurfaceRenderer(Context& context, const core::Mesh& mesh, const MakePaint& make_paint,
+                    bool reads_light_field)
       : context_(context),
         gl_(gl::load_functions(context)),
-        layer_(gl_, mesh, make_patch_shader(gl_, mesh, light_field, threads)),
+        layer_(gl_, mesh, make_paint(gl_)),
         target_(gl_, true),
-        reads_light_field_(!has_patch_shader(light_field)) {
-    assert(light_field.patch_count() == mesh.positions.size());
-  }
+        reads_light_field_(reads_light_field) {}
 
   ~GlSurfaceRenderer() override { context_.make_current(); }
   GlSurfaceRenderer(const GlSurfaceRenderer&) = delete;
@@ -88,7 +86,17 @@ class GlSurfaceRenderer final : public Renderer {
 std::unique_ptr<Renderer> make_gl_surface_renderer(Context& context, const core::Mesh& mesh,
                                                    const fitting::PatchLightField& light_field,
                                                    int threads) {
-  return std::make_unique<GlSurfaceRenderer>(context, mesh, light_field, threads);
+  assert(light_field.patch_count() == mesh.positions.size());
+  const auto make_paint = [&](const gl::Functions& gl) {
+    return make_patch_shader(gl, mesh, light_field, threads);
+  };
+  return std::make_unique<GlSurfaceRenderer>(context, mesh, make_paint,
+                                             !has_patch_shader(light_field));
+}
+
+std::unique_ptr<Renderer> make_painted_renderer(Context& context, const core::Mesh& mesh,
+                                                const MakePaint& make_paint) {
+  return std::make_unique<GlSurfaceRenderer>(context, mesh, make_paint, true);
 }
 
 }  // namespace sheen::render

@@ -7,6 +7,7 @@
 #include "render/gl/functions.h"
 
 #include <Eigen/Core>
+#include <opencv2/core/types.hpp>
 
 #include <cstdint>
 #include <memory>
@@ -32,13 +33,18 @@ class PatchShader {
   /// `bind` makes it available as kSurfaceTextureUnit.
   [[nodiscard]] virtual const core::Atlas* atlas() const { return nullptr; }
 
+  /// With an atlas: GLSL of the fragment stage that defines `vec3 surface_texture(vec2 place)`, the
+  /// colour added at a place in parts of the atlas' sides. By default it is read from
+  /// kSurfaceTextureUnit.
+  [[nodiscard]] virtual std::string texture_glsl() const;
+
   /// Sends these elements of the light field (ascending, no repeats), neighbouring ones together.
   /// Returns the bytes handed to OpenGL.
   virtual std::size_t upload(std::span<const std::uint32_t> elements) = 0;
 
-  /// Called before every draw with the eye in the object frame (metres), for shaders that depend on
-  /// the view on this side of OpenGL.
-  virtual void look_from(const Eigen::Vector3f& /*eye*/) {}
+  /// Called before every draw with the eye in the object frame (metres) and the size of the image,
+  /// for shaders that depend on the view on this side of OpenGL. May draw elsewhere.
+  virtual void look_from(const Eigen::Vector3f& /*eye*/, const cv::Size& /*image_px*/) {}
 
   /// Makes the coefficients available to the next draw.
   virtual void bind() const = 0;

@@ -4,6 +4,7 @@
 #include "render/evaluated/evaluated_patch_shader.h"
 #include "render/iwls/iwls_patch_shader.h"
 #include "render/mean/mean_patch_shader.h"
+#include "render/shaders/shader_text.h"
 #include "render/sparse/sparse_patch_shader.h"
 #include "render/spherical_harmonics/harmonics_patch_shader.h"
 #include "render/surface/patch_shader.h"
@@ -34,6 +35,10 @@ Factory factory_of(const fitting::PatchLightField& light_field) {
 }
 
 }  // namespace
+
+std::string PatchShader::texture_glsl() const {
+  return std::string(shader_text("shaders/surface_texture.glsl"));
+}
 
 bool has_patch_shader(const fitting::PatchLightField& light_field) {
   return factory_of(light_field) != nullptr;

@@ -6,7 +6,6 @@
 #include "fitting/patch_light_field.h"
 #include "render/gl/program.h"
 #include "render/shaders/shader_text.h"
-#include "render/surface/patch_shader.h"
 #include "render/surface/view_block.h"
 
 #include <Eigen/Geometry>
@@ -57,14 +56,14 @@ std::string lens_glsl() {
 }
 
 gl::Program make_surface_program(const gl::Functions& gl, const std::string& patch_glsl,
-                                 bool textured, bool tessellated) {
+                                 const std::string& texture_glsl, bool tessellated) {
   // Say in front of every stage what is wanted.
   const bool shaded = !patch_glsl.empty();
-  const std::string defines =
-      std::string(shaded ? "#define SHADED\n" : "") + (textured ? "#define TEXTURED\n" : "") +
-      (tessellated ? "#define TESSELLATED\n" : "") + "#define UNSEEN_WEIGHT " +
-      std::to_string(fitting::kUnseenWeight) + "\n" + "#define SURFACE_TEXTURE_UNIT " +
-      std::to_string(kSurfaceTextureUnit) + "\n";
+  const std::string defines = std::string(shaded ? "#define SHADED\n" : "") +
+                              (texture_glsl.empty() ? "" : "#define TEXTURED\n") +
+                              (tessellated ? "#define TESSELLATED\n" : "") +
+                              "#define UNSEEN_WEIGHT " + std::to_string(fitting::kUnseenWeight) +
+                              "\n";
   const std::string lens = lens_glsl();
 
   // Gather the stages.
@@ -82,17 +81,23 @@ gl::Program make_surface_program(const gl::Functions& gl, const std::string& pat
                       {defines, lens, shader_text("shaders/surface.tese")}});
   }
   const char* const fragment = shaded ? "shaders/surface.frag" : "shaders/depth.frag";
-  stages.push_back({GL_FRAGMENT_SHADER, fragment, {defines, shader_text(fragment)}});
+  stages.push_back({GL_FRAGMENT_SHADER, fragment, {defines, texture_glsl, shader_text(fragment)}});
   return gl::make_program(gl, stages);
 }
 
 }  // namespace
 
-SurfacePass::SurfacePass(const gl::Functions& gl, const core::Mesh& mesh, std::string patch_glsl,
-                         const core::Atlas* atlas)
-    : gl_(gl), patch_glsl_(std::move(patch_glsl)), textured_(atlas != nullptr) {
+SurfacePass::SurfacePass(const gl::Functions& gl, const core::Mesh& mesh) : gl_(gl) {
   measure(mesh);
-  if (atlas != nullptr) {
+  upload(mesh);
+  program(false);
+}
+
+SurfacePass::SurfacePass(const gl::Functions& gl, const core::Mesh& mesh, const PatchShader& paint)
+    : gl_(gl), patch_glsl_(paint.glsl()) {
+  measure(mesh);
+  if (const core::Atlas* const atlas = paint.atlas()) {
+    texture_glsl_ = paint.texture_glsl();
     upload_split(mesh, *atlas);
   } else {
     upload(mesh);
@@ -222,7 +227,9 @@ bool SurfacePass::needs_tessellation(const Eigen::Isometry3d& camera_from_object
 
 const gl::Program& SurfacePass::program(bool tessellated) {
   gl::Program& program = tessellated ? tessellated_ : plain_;
-  if (program.name() == 0) program = make_surface_program(gl_, patch_glsl_, textured_, tessellated);
+  if (program.name() == 0) {
+    program = make_surface_program(gl_, patch_glsl_, texture_glsl_, tessellated);
+  }
   return program;
 }
 

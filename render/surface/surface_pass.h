@@ -5,6 +5,7 @@
 #include "core/geometry/camera.h"
 #include "core/mesh/mesh.h"
 #include "render/gl/owners.h"
+#include "render/surface/patch_shader.h"
 
 #include <Eigen/Geometry>
 
@@ -18,12 +19,10 @@ namespace sheen::render {
 /// Where the lens would bend an edge visibly the triangles are tessellated first.
 class SurfacePass {
  public:
-  /// Depth only when `patch_glsl` is empty; else it defines
-  /// `vec4 evaluate_patch(int patch_idx, vec2 uv)`, colour sum and weight sum of a patch. With an
-  /// atlas (used here only) the texture bound to kSurfaceTextureUnit is added. The context is
-  /// current; `gl` outlives the pass. Throws core::Error (run_failed).
-  SurfacePass(const gl::Functions& gl, const core::Mesh& mesh, std::string patch_glsl,
-              const core::Atlas* atlas = nullptr);
+  /// Depth only. The context is current; `gl` outlives the pass. Throws core::Error (run_failed).
+  SurfacePass(const gl::Functions& gl, const core::Mesh& mesh);
+  /// Colours, too: what `paint` (used here only) says of patches and of a texture.
+  SurfacePass(const gl::Functions& gl, const core::Mesh& mesh, const PatchShader& paint);
 
   /// Clears the bound framebuffer `target` and draws.
   void draw(GLuint target, const core::CameraModel& camera,
@@ -46,8 +45,8 @@ class SurfacePass {
   const gl::Program& program(bool tessellated);
 
   const gl::Functions& gl_;
-  std::string patch_glsl_;
-  bool textured_;
+  std::string patch_glsl_;                            ///< empty: depth only
+  std::string texture_glsl_;                          ///< empty: no texture
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  ///< of the bounds, object frame
   double radius_m_ = 0;
   double longest_edge_m_ = 0;

@@ -3,7 +3,9 @@
 
 #include "fitting/patch_light_field.h"
 #include "render/renderer.h"
+#include "render/surface/patch_shader.h"
 
+#include <functional>
 #include <memory>
 
 namespace sheen::render {
@@ -19,6 +21,13 @@ namespace sheen::render {
 std::unique_ptr<Renderer> make_gl_surface_renderer(Context& context, const core::Mesh& mesh,
                                                    const fitting::PatchLightField& light_field,
                                                    int threads = 1);
+
+/// Makes what a mesh is painted with, by functions that outlive it.
+using MakePaint = std::function<std::unique_ptr<PatchShader>(const gl::Functions&)>;
+
+/// A mesh by OpenGL in the same way, with a paint of one's own. Drawing may read the light field.
+std::unique_ptr<Renderer> make_painted_renderer(Context& context, const core::Mesh& mesh,
+                                                const MakePaint& make_paint);
 
 /// Reference without OpenGL: one ray per pixel, same interpolation. Exact at every pixel under any
 /// lens distortion; slow.

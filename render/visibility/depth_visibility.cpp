@@ -26,7 +26,7 @@ class DepthVisibility final : public core::Visibility {
       : context_(context),
         mesh_(mesh),
         gl_(gl::load_functions(context)),
-        pass_(gl_, mesh, {}),
+        pass_(gl_, mesh),
         target_(gl_, false) {}
 
   ~DepthVisibility() override { context_.make_current(); }

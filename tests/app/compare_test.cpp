@@ -89,6 +89,53 @@ TEST(Advice, IsTheSmallestModelWithinHalfADecibelOfTheBest) {
   EXPECT_FALSE(evaluation::advise({}, 1));
 }
 
+// What jumps or has holes is passed over for what does not, and named where there is nothing else.
+TEST(Advice, NamesWhatPsnrDoesNotShow) {
+  std::vector<evaluation::ComparedCandidate> rows{
+      figures("jumping", 30.0, 10), figures("leaky", 29.9, 20), figures("sound", 29.8, 80)};
+  rows[0].measured.pop_ratio = 54;
+  rows[1].measured.outline.hole_fraction = 0.012;
+  EXPECT_EQ(evaluation::advise(rows, 1)->candidate, "sound");
+  rows.pop_back();
+  const auto jumping = evaluation::advise(rows, 1);
+  EXPECT_EQ(jumping->candidate, "jumping");
+  EXPECT_NE(jumping->sentence.find("; but it jumps while the viewer moves (changes of 54 times"),
+            std::string::npos)
+      << jumping->sentence;
+  rows.erase(rows.begin());
+  const auto leaky = evaluation::advise(rows, 1);
+  EXPECT_NE(leaky->sentence.find("; but it leaves 1.2 % of the object uncovered."),
+            std::string::npos)
+      << leaky->sentence;
+}
+
+TEST(Advice, SaysWhereAnotherOneIsBetter) {
+  std::vector<evaluation::ComparedCandidate> rows{figures("pick", 30.0, 10),
+                                                  figures("other", 29.4, 100)};
+  evaluation::Measurement& pick = rows[0].measured;
+  evaluation::Measurement& other = rows[1].measured;
+  pick.worst_psnr_db = 21;
+  other.worst_psnr_db = 24;
+  pick.outline = {.box_psnr_db = 20, .edge_difference = 14, .hole_fraction = 0};
+  other.outline = {.box_psnr_db = 27, .edge_difference = 8, .hole_fraction = 0};
+  pick.drawing_bytes = 66'000'000;
+  other.drawing_bytes = 13'000'000;
+  const auto advice = evaluation::advise(rows, 1);
+  EXPECT_EQ(advice->candidate, "pick");
+  EXPECT_NE(advice->sentence.find("; but its worst view has 21.0 dB (\"other\": 24.0), its edges "
+                                  "differ by 14 grey levels (\"other\": 8), it draws beside the "
+                                  "object (20.0 dB over its box, \"other\": 27.0), it takes 66 MB "
+                                  "while drawn (\"other\": 13)."),
+            std::string::npos)
+      << advice->sentence;
+  // Little differences and figures that nobody has are not worth a word.
+  other = pick;
+  other.error.psnr_db = 29.4;
+  other.worst_psnr_db = 22.9;
+  other.drawing_bytes = 0;
+  EXPECT_EQ(evaluation::advise(rows, 1)->sentence.find("; but"), std::string::npos);
+}
+
 TEST(SessionNames, AreTheFoldersOwnUnlessTheyClash) {
   EXPECT_EQ(evaluation::session_names({"a/box", "b/stone/"}),
             (std::vector<std::string>{"box", "stone"}));

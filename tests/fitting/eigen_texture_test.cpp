@@ -7,8 +7,11 @@
 #include "fitting/eigen_texture/incremental_fit.h"
 #include "render/context/context.h"
 #include "render/eigen_texture/blend_kernels.h"
+#include "render/eigen_texture/eigen_paint.h"
+#include "render/eigen_texture/eigen_texture_renderer.h"
 #include "render/eigen_texture/texture_blender.h"
 #include "render/renderer.h"
+#include "render/surface/surface_renderer.h"
 #include "tests/fitting/photographs_for_tests.h"
 
 #include <gtest/gtest.h>
@@ -257,6 +260,43 @@ TEST(EigenTexture, IncrementalIsNearlyAsGoodAsBatch) {
   RecordProperty("batch", std::to_string(batch));
   RecordProperty("incremental", std::to_string(live));
   EXPECT_LT(live, 1.035 * batch);
+}
+
+// Sums in floats by OpenGL against whole numbers on the CPU. Colours stay within what images hold,
+// because screen space clamps after reading between texels. In texture space (as many pixels as
+// texels) both round texels, in screen space only the CPU does; the image is rounded after, and
+// OSMesa reads textures with 8 bits between two texels, so a few pixels may be two levels apart.
+TEST(EigenTexture, OpenGlDrawsTheCpusImage) {
+  constexpr int views = 12;
+  const auto photographs = cap_of_photographs(views, 0);
+  const auto fitter = fitted(photographs, views_from(0, views), "30");
+  const auto& model = dynamic_cast<const EigenTexture&>(fitter->light_field());
+  const auto context = render::make_osmesa_context();
+  const auto cpu = render::make_cpu_eigen_texture_renderer(*context, photographs.mesh(), model, 1);
+  const auto gl =
+      render::make_painted_renderer(*context, photographs.mesh(), [&](const auto& functions) {
+        return render::eigen_texture::make_eigen_paint(functions, model);
+      });
+  const std::size_t texels = model.used().size();
+  for (const int width : {80, 320}) {
+    const auto camera = render::testing::plain_camera(width, 3 * width / 4);
+    const auto pixels = static_cast<std::size_t>(camera.width_px() * camera.height_px());
+    EXPECT_EQ(pixels >= texels, width == 320);  // one size for each space
+    for (const double azimuth : {0.3, 2.1}) {
+      const auto pose =
+          looking_at_origin({0.4 * std::cos(azimuth), 0.4 * std::sin(azimuth), 1}, 0.36);
+      const auto expected = cpu->render(camera, pose);
+      const auto drawn = gl->render(camera, pose);
+      EXPECT_EQ(cv::countNonZero(expected.mask != drawn.mask), 0);
+      EXPECT_EQ(cv::countNonZero(expected.support != drawn.support), 0);
+      const auto difference = render::testing::difference(expected.image, drawn.image, drawn.mask);
+      EXPECT_GT(difference.pixels, pixels / 10);
+      EXPECT_LE(difference.largest, width == 320 ? 1 : 2);
+      EXPECT_LT(difference.mean, 0.5);
+      std::printf("%d pixels wide: mean %.3f, largest %d\n", width, difference.mean,
+                  difference.largest);
+    }
+  }
 }
 
 // No colour of the object is black; from behind, which nobody saw, colours of the vertices stand

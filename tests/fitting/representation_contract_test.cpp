@@ -5,9 +5,11 @@
 #include "fitting/descriptor.h"
 #include "fitting/model_file/model_file.h"
 #include "fitting/model_file/model_part.h"
+#include "fitting/patch_light_field.h"
 #include "fitting/undo/undoable_fitter.h"
 #include "render/context/context.h"
 #include "render/renderer.h"
+#include "render/surface/surface_renderer.h"
 #include "tests/fitting/photographs_for_tests.h"
 #include "tests/support/temporary_folder.h"
 
@@ -43,7 +45,8 @@ std::string bytes_of(const core::Mesh& mesh, const LightField& light_field) {
 
 /// Makes a fit cheap where it could be large: what is checked does not depend on sizes.
 OptionValues small_options(const Descriptor& one) {
-  const OptionValues small{{"directions", "20"}, {"billboard-size", "64"}, {"texture-side", "128"}};
+  const OptionValues small{
+      {"directions", "20"}, {"billboard-size", "64"}, {"texture-side", "128"}, {"texel-mm", "3"}};
   OptionValues values;
   for (const FitOption& option : one.default_options()->table()) {
     if (const auto found = small.find(option.name); found != small.end()) values.insert(*found);
@@ -157,6 +160,121 @@ TEST_P(Representation, UndoEqualsAFitThatNeverSawTheViews) {
   const auto never_saw = fitted(*GetParam(), photographs, {0, 1, 2, 3, 4});
   EXPECT_TRUE(bytes_of(photographs.mesh(), undoable.light_field()) ==
               bytes_of(photographs.mesh(), never_saw->light_field()));
+}
+
+// ---- what images have in common ----
+
+/// Photographs as a fitter is shown them.
+struct Walk {
+  core::Mesh mesh;
+  core::CameraModel camera;
+  std::vector<testing::Photograph> views;
+};
+
+Walk walk_of(const Photographs& photographs) {
+  return {photographs.mesh(), photographs.camera(), photographs.views()};
+}
+
+/// Fits a walk and draws a view, its support included.
+render::RenderedView drawn(const Descriptor& one, const Walk& walk, const Eigen::Isometry3d& pose) {
+  pipeline::ViewObserver observer(walk.mesh, core::make_raster_visibility(walk.mesh, 1), {}, 1);
+  const auto fitter = make_fitter(one.name, walk.mesh, small_options(one));
+  for (std::size_t i = 0; i < walk.views.size(); ++i) {
+    const auto& [image, camera_from_object] = walk.views[i];
+    fitter->integrate(
+        observer.observe(static_cast<int>(i), image, walk.camera, camera_from_object));
+  }
+  fitter->finish();
+  const auto context = render::make_osmesa_context();
+  return render::make_renderer(*context, walk.mesh, fitter->light_field())
+      ->render(walk.camera, pose);
+}
+
+/// Between two images of the same representation, well within both outlines.
+render::testing::Difference between(const render::RenderedView& a, const render::RenderedView& b) {
+  return render::testing::difference(a.image, b.image,
+                                     render::testing::common_interior(a.support, b.support, 4));
+}
+
+const Eigen::Isometry3d kElsewhere = render::testing::looking_at_origin({0.3, -0.8, 0.4}, 0.36);
+
+/// How far a picture of `kElsewhere` is from the truth: what representations promise beyond exact
+/// numbers (those of the texture depend on its charts, some on tolerances) is kept to within it.
+double error_of(const render::RenderedView& view) {
+  const Photographs truth(render::testing::sphere(0.1f, 8), {kElsewhere}, glossy);
+  const cv::Mat inside = render::testing::common_interior(view.support, view.mask, 4);
+  return render::testing::difference(view.image, truth.views()[0].image, inside).mean;
+}
+
+// Colours a c + b in, a c + b out. What is linear in the colours differs by rounding: half a level
+// of the photographs, half of either image, a quarter of a level in the mean.
+TEST_P(Representation, GainAndOffsetPassThrough) {
+  constexpr double gain = 0.75, offset = 30;
+  Walk walk = walk_of(photographs_of(glossy));
+  auto plain = drawn(*GetParam(), walk, kElsewhere);
+  const double error = gain * error_of(plain);
+  plain.image.convertTo(plain.image, -1, gain, offset);
+  for (testing::Photograph& view : walk.views) view.image.convertTo(view.image, -1, gain, offset);
+  const auto found = between(drawn(*GetParam(), walk, kElsewhere), plain);
+  EXPECT_GT(found.pixels, 3000u);
+  EXPECT_LE(found.mean, 0.3 + 0.5 * error);
+}
+
+/// Object and cameras, turned and shifted.
+Walk moved(Walk walk, const Eigen::Isometry3d& moved_from_object) {
+  for (auto& position : walk.mesh.positions) {
+    position = (moved_from_object * position.cast<double>()).cast<float>();
+  }
+  for (auto& normal : walk.mesh.normals) {
+    normal = (moved_from_object.linear() * normal.cast<double>()).cast<float>().normalized();
+  }
+  for (testing::Photograph& view : walk.views) {
+    view.camera_from_object = view.camera_from_object * moved_from_object.inverse();
+  }
+  return walk;
+}
+
+// Positions are rounded to 2^-24 of a metre, a thousandth of a pixel here. The axes of discs,
+// charts and lattices of directions turn with the world, not with the object: two pictures that are
+// no further from each other than from the truth.
+TEST_P(Representation, TheWorldMayBeMoved) {
+  const Walk walk = walk_of(photographs_of(glossy));
+  const auto before = drawn(*GetParam(), walk, kElsewhere);
+  const double error = error_of(before);
+  Eigen::Isometry3d moved_from_object = Eigen::Isometry3d::Identity();
+  moved_from_object.translation() = Eigen::Vector3d(0.7, -0.4, 0.2);
+  moved_from_object.linear() =
+      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+  const auto after =
+      drawn(*GetParam(), moved(walk, moved_from_object), kElsewhere * moved_from_object.inverse());
+  const auto found = between(after, before);
+  EXPECT_GT(found.pixels, 3000u);
+  EXPECT_LE(found.mean, 0.3 + error);
+}
+
+TEST_P(Representation, TheOrderOfViewsDoesNotShow) {
+  Walk walk = walk_of(photographs_of(glossy));
+  const auto forwards = drawn(*GetParam(), walk, kElsewhere);
+  const double error = error_of(forwards);
+  std::ranges::reverse(walk.views);
+  const auto found = between(drawn(*GetParam(), walk, kElsewhere), forwards);
+  EXPECT_GT(found.pixels, 3000u);
+  EXPECT_LE(found.mean, 0.5 * error);
+}
+
+// Those without patches have tests of their own where OpenGL draws them (eigen_texture_test,
+// copies_gl_test).
+TEST_P(Representation, OpenGlDrawsTheReference) {
+  const auto photographs = photographs_of(glossy);
+  const auto fitter = fitted(*GetParam(), photographs, kAllViews);
+  const PatchLightField* const patches = as_patches(fitter->light_field());
+  if (patches == nullptr) return;
+  const auto context = render::make_osmesa_context();
+  const auto gl = render::make_renderer(*context, photographs.mesh(), *patches)
+                      ->render(photographs.camera(), kElsewhere);
+  const auto cpu = render::make_reference_surface_renderer(photographs.mesh(), *patches, 1)
+                       ->render(photographs.camera(), kElsewhere);
+  EXPECT_LE(between(gl, cpu).largest, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, Representation, ::testing::ValuesIn(representations()),
