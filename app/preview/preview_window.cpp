@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "app/preview/preview_window.h"
 
+#include "app/preview/snapshot.h"
 #include "core/diagnostics/error.h"
 #include "core/geometry/tangent_frame.h"
-#include "core/image/write_image.h"
 #include "fitting/patch_light_field.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
@@ -255,13 +253,7 @@ void PreviewWindow::save_snapshot() {
   image_ = window_.image();
   if (subject_.snapshot_folder.empty()) return;
   try {
-    // Never over an older one.
-    std::filesystem::path file;
-    do {
-      file = subject_.snapshot_folder / fmt::format("sheen-{:03}.png", ++snapshots_);
-    } while (std::filesystem::exists(file));
-    core::write_image(file, image_);
-    note_ = "Snapshot " + file.filename().string();
+    note_ = "Snapshot " + write_snapshot(image_, subject_.snapshot_folder).filename().string();
   } catch (const core::Error& error) {
     note_ = error.what();
   }

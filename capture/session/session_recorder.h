@@ -20,12 +20,14 @@
 
 namespace sheen::capture {
 
-/// What a session says besides its frames. Board and mesh are copied.
+/// What a session says besides its frames. Board and mesh are copied; what is not known yet is
+/// found from the recording later (open_unfinished_session).
 struct SessionSetup {
   core::CameraModel camera;
-  std::filesystem::path board;
-  std::filesystem::path mesh;
+  std::filesystem::path board;  ///< empty: not known yet
+  std::filesystem::path mesh;   ///< empty: not known yet
   Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();
+  bool camera_is_guessed = false;  ///< only the images' size is known of it; it is not written
 };
 
 /// Records a session that survives a crash. The folder opens as a session before the first image;

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/pose/board.h"
+#include "reconstruction/hull/visual_hull.h"
+#include "reconstruction/object/work_progress.h"
+#include "reconstruction/silhouette/cut_out.h"
+
+#include <Eigen/Geometry>
+#include <opencv2/core/mat.hpp>
+
+#include <string_view>
+#include <vector>
+
+namespace sheen::reconstruction {
+
+/// The part of the plane that is learned: the tags' and beyond, board frame, metres.
+Eigen::AlignedBox2f stage_region(const capture::Board& board);
+
+/// Votes that may be wrong when one view in `share` may, of so many views; at least 1.
+int one_in(std::size_t share, std::size_t views);
+
+/// Cuts the object out of every view. `masks` may be empty (cut_out.h).
+std::vector<Silhouette> cut_out_all(const LearnedStage& stage, const ViewSet& views,
+                                    const std::vector<cv::Mat>& masks, OutlineDetail detail,
+                                    int threads, std::string_view step,
+                                    const WorkProgress& progress);
+
+/// What these outlines say of points in space.
+std::vector<OutlineVote> votes_of(const std::vector<Silhouette>& silhouettes);
+
+}  // namespace sheen::reconstruction
