@@ -5,6 +5,7 @@
 #include "app/preview/panel_words.h"
 #include "app/preview/snapshot.h"
 #include "app/preview/theme.h"
+#include "app/preview/window_layout.h"
 #include "core/diagnostics/error.h"
 
 #include <fmt/format.h>
@@ -18,16 +19,7 @@ namespace {
 
 using reconstruction::kViewDirections;
 
-constexpr int kWidth = 1280;
-constexpr int kHeight = 720;
-constexpr float kPanelWidth = 292;    // in units of the content scale
-constexpr float kInsetWidth = 0.34f;  // of the large view
-constexpr float kMargin = 14;         // in units of the content scale
-constexpr double kSameSize = 0.2;     // of the radius: a new hull is seen as the one before was
-
-constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                                    ImGuiWindowFlags_NoSavedSettings |
-                                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav;
+constexpr double kSameSize = 0.2;  // of the radius: a new hull is seen as the one before was
 
 }  // namespace
 
@@ -38,7 +30,7 @@ WalkWindow::ShownHull::ShownHull(Window& window, std::shared_ptr<const core::Mes
 
 WalkWindow::WalkWindow(WalkSubject subject)
     : subject_(std::move(subject)),
-      window_(subject_.title, kWidth, kHeight),
+      window_(subject_.title, layout::kWidth, layout::kHeight),
       camera_view_(window_.gl()) {}
 
 bool WalkWindow::redraw(double longest_wait_s) {
@@ -99,7 +91,7 @@ void WalkWindow::look_for_missing() {
 
 void WalkWindow::lay_out() {
   const ImVec2 display = ImGui::GetIO().DisplaySize;
-  const float panel = std::min(kPanelWidth * window_.content_scale(), 0.5f * display.x);
+  const float panel = std::min(layout::kPanelWidth * window_.content_scale(), 0.5f * display.x);
   const ImVec2 view(display.x - panel, display.y);
   show_views(view);
   show_panel({view.x, 0}, {panel, display.y});
@@ -110,10 +102,10 @@ void WalkWindow::show_views(const ImVec2& size) {
   ImGui::SetNextWindowSize(size);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{0, 0});
   ImGui::Begin("views", nullptr,
-               kFixed | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground);
+               layout::kFixed | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground);
   ImGui::PopStyleVar();
-  const float margin = kMargin * window_.content_scale();
-  const float width = kInsetWidth * size.x;
+  const float margin = layout::kMargin * window_.content_scale();
+  const float width = layout::kInsetWidth * size.x;
   const auto& lens = sight_.camera;
   const float height =
       width * static_cast<float>(lens.height_px()) / static_cast<float>(lens.width_px());
@@ -138,7 +130,7 @@ void WalkWindow::show_views(const ImVec2& size) {
 void WalkWindow::show_panel(const ImVec2& corner, const ImVec2& size) const {
   ImGui::SetNextWindowPos(corner);
   ImGui::SetNextWindowSize(size);
-  ImGui::Begin("panel", nullptr, kFixed & ~ImGuiWindowFlags_NoScrollbar);
+  ImGui::Begin("panel", nullptr, layout::kFixed & ~ImGuiWindowFlags_NoScrollbar);
   ImGui::PushFont(window_.fonts().large);
   text(theme::kText, "Recording");
   ImGui::PopFont();

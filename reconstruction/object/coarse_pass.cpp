@@ -35,7 +35,8 @@ CoarseHull carve_coarsely(const capture::Board& board, const ViewSet& views,
   carve_hull(views, votes_of(silhouettes), votes_of_pass(pass, views.views.size()), nullptr, 0,
              threads, grid);
   grid.cut_below(0);
-  return {std::move(grid), std::move(stage.map)};
+  const float like_paper = paper_share(board, stage, views, silhouettes);
+  return {std::move(grid), std::move(stage.map), like_paper};
 }
 
 }  // namespace sheen::reconstruction

@@ -23,6 +23,7 @@ struct CoarseGrids {
 struct CoarseHull {
   DistanceGrid grid;
   StageMap stage;
+  float paper_share = 0;  ///< of what was cut out (outline_pass.h)
 };
 
 /// One pass towards a coarse shape: learns the stage beside the shape of the pass before (null: the

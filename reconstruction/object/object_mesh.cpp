@@ -2,6 +2,7 @@
 #include "reconstruction/object/object_mesh.h"
 
 #include "core/concurrency/parallel_for.h"
+#include "core/diagnostics/error.h"
 #include "core/numerics/median.h"
 #include "reconstruction/hull/visual_hull.h"
 #include "reconstruction/object/coarse_pass.h"
@@ -50,9 +51,14 @@ class Measurement {
 
   ObjectMesh run() {
     refuse_narrow_range(session_, board_, views_);
-    Shape shape = find_coarse_shape();
-    shape = find_fine_shape(shape);
-    return make_surface(shape);
+    try {
+      Shape shape = find_coarse_shape();
+      shape = find_fine_shape(shape);
+      return make_surface(shape);
+    } catch (const core::Error&) {
+      refuse_paper_like(session_, paper_share_);  // the cause of whatever was found to be wrong
+      throw;
+    }
   }
 
  private:
@@ -64,6 +70,7 @@ class Measurement {
       CoarseHull found = carve_coarsely(board_, views, grids, pass, shape ? &*shape : nullptr,
                                         threads_, progress_);
       if (pass == 0) result_.hidden_share = refuse_hidden_sheet(session_, board_, found.stage);
+      paper_share_ = found.paper_share;
       shape = pass + 1 < kCoarsePasses ? likeliest_shape(session_, std::move(found.grid))
                                        : only_shape(session_, board_, std::move(found.grid));
     }
@@ -82,6 +89,7 @@ class Measurement {
     const auto silhouettes = cut_out_all(stage, views_, masks, OutlineDetail::matted, threads_,
                                          "outlines, last pass", progress_);
     keep(silhouettes);
+    paper_share_ = paper_share(board_, stage, views_, silhouettes);
 
     Eigen::AlignedBox3f box = coarse.grown(0.06F);
     const float cell = box.sizes().maxCoeff() / kFineCells;
@@ -160,6 +168,7 @@ class Measurement {
   int threads_;
   WorkProgress progress_;
   ViewSet views_;
+  float paper_share_ = 0;  ///< of what was cut out last
   std::vector<cv::Mat> labels_;
   std::vector<ViewBackground> backgrounds_;
   ObjectMesh result_;

@@ -2,6 +2,7 @@
 #include "reconstruction/object/outline_pass.h"
 
 #include "core/concurrency/parallel_for.h"
+#include "reconstruction/silhouette/segmentation.h"
 #include "reconstruction/stage/print_check.h"
 
 #include <algorithm>
@@ -53,6 +54,28 @@ std::vector<OutlineVote> votes_of(const std::vector<Silhouette>& silhouettes) {
                      silhouette.background.source == static_cast<double>(TexelSource::inpainted)});
   }
   return votes;
+}
+
+float paper_share(const capture::Board& board, const LearnedStage& stage, const ViewSet& views,
+                  const std::vector<Silhouette>& silhouettes) {
+  const auto paper = paper_colour(board, stage.map);
+  if (!paper) return 0;
+  std::size_t all = 0;
+  std::size_t like_paper = 0;
+  for (std::size_t v = 0; v < silhouettes.size(); ++v) {
+    const cv::Vec3f exposed = paper->mul(stage.gains[v]);
+    const cv::Mat& labels = silhouettes[v].labels;
+    for (int y = 0; y < labels.rows; ++y) {
+      for (int x = 0; x < labels.cols; ++x) {
+        if (labels.at<std::uint8_t>(y, x) != static_cast<std::uint8_t>(PixelLabel::object))
+          continue;
+        const cv::Vec3f colour = cv::Vec3f(views.views[v].image.at<cv::Vec3b>(y, x)) * (1.0F / 255);
+        ++all;
+        like_paper += looks_like_paper(colour, exposed) ? 1 : 0;
+      }
+    }
+  }
+  return all == 0 ? 0 : static_cast<float>(like_paper) / static_cast<float>(all);
 }
 
 }  // namespace sheen::reconstruction

@@ -29,4 +29,9 @@ std::vector<Silhouette> cut_out_all(const LearnedStage& stage, const ViewSet& vi
 /// What these outlines say of points in space.
 std::vector<OutlineVote> votes_of(const std::vector<Silhouette>& silhouettes);
 
+/// Share of what was cut out that looks like the sheet's paper, in the open or in shade; 0 where
+/// too little paper is seen to tell.
+float paper_share(const capture::Board& board, const LearnedStage& stage, const ViewSet& views,
+                  const std::vector<Silhouette>& silhouettes);
+
 }  // namespace sheen::reconstruction

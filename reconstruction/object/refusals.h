@@ -28,6 +28,9 @@ void refuse_empty_sheet(const std::filesystem::path& session, const Components& 
 void refuse_what_stands_there(const std::filesystem::path& session, const capture::Board& board,
                               const Components& components);
 
+/// Most of what was cut out looks like paper: only asked when no shape came of it.
+void refuse_paper_like(const std::filesystem::path& session, float paper_share);
+
 /// Silhouettes that the hull, which all of them share, leaves bare: the object moved.
 void refuse_moved_object(const std::filesystem::path& session, float covered_share);
 
