@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // From images to a surface: a ball on a sheet, drawn ray by ray.
+#include "core/diagnostics/error.h"
 #include "reconstruction/object/object_mesh.h"
 #include "reconstruction/surface/self_intersection.h"
 #include "tests/reconstruction/stage_for_tests.h"
@@ -216,6 +217,27 @@ TEST(MeasuredObject, HasFlatFacesAndSharpEdgesWhereItIsABox) {
   EXPECT_GT(mean, 0.02 - 0.0012);
   EXPECT_LT(mean, 0.0216 + 0.0012);
   EXPECT_LT(ripple, 0.0006);  // a quarter of a pixel
+}
+
+/// The ball in the colour of the paper (225), a little darker below.
+std::optional<Hit> meet_white_ball(const Eigen::Vector3d& eye, const Eigen::Vector3d& direction) {
+  auto hit = meet_ball(eye, direction);
+  if (!hit) return hit;
+  const Eigen::Vector3d normal = (eye + hit->way * direction - kBallCentre) / kBallRadius_m;
+  hit->colour = cv::Vec3d::all(225 * (0.95 + 0.05 * normal.z()));
+  return hit;
+}
+
+TEST(MeasuredObject, ThatIsWhiteOnWhitePaperIsRefusedForThat) {
+  try {
+    measure(1, meet_white_ball);
+    FAIL() << "nothing was thrown";
+  } catch (const core::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("walk: the object looks like the sheet"),
+              std::string::npos)
+        << error.what();
+    EXPECT_NE(std::string(error.what()).find("coloured or grey paper"), std::string::npos);
+  }
 }
 
 }  // namespace

@@ -80,6 +80,13 @@ TEST(Refusals, ASheetThatIsHidden) {
   EXPECT_EQ(refuse_hidden_sheet("walk", board, map), 0);
 }
 
+TEST(Refusals, AnObjectThatLooksLikeItsSheet) {
+  expect_refused([] { refuse_paper_like("walk", 0.81F); },
+                 "looks like the sheet that it stands on (81 % of what could be cut out",
+                 "print the sheet on coloured or grey paper");
+  EXPECT_NO_THROW(refuse_paper_like("walk", 0.2F));
+}
+
 TEST(Refusals, AnObjectThatMoved) {
   expect_refused([] { refuse_moved_object("walk", 0.5F); }, "contradict each other (only 50 %",
                  "leave object and sheet where they are");
