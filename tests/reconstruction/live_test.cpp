@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // A walk while it is filmed: the sample session, whose camera and object are known.
+#include "capture/board_print/default_board.h"
 #include "capture/session/session.h"
 #include "core/diagnostics/error.h"
 #include "core/mesh/bounds.h"
 #include "reconstruction/live/growing_hull.h"
 #include "reconstruction/live/view_directions.h"
+#include "tests/capture/rendered_board.h"
 #include "tests/reconstruction/stage_for_tests.h"
 
 #include <gtest/gtest.h>
@@ -84,6 +86,25 @@ TEST(LiveWalk, SaysAtOnceThatTheBoardIsAnotherOne) {
               std::string::npos)
         << error.what();
   }
+}
+
+TEST(LiveWalk, RecognisesTheDefaultSheetByItsIds) {
+  const core::CameraModel camera = capture::test::make_camera(640, 480, false);
+  const capture::Board sheet = capture::default_board(capture::kDefaultSheets[0]);
+  LiveWalk walk({.session = "walk", .board = std::nullopt, .camera = camera});
+  // Half a second apart and 90 degrees: four directions.
+  for (int i = 0; i < 4; ++i) {
+    const auto pose = capture::test::look_at_board(0.4, 0.8, 1.57 * i + 0.2);
+    walk.look_at({.image = capture::test::render_board(sheet, camera, pose, {.supersampling = 2}),
+                  .time_s = 0.5 * i,
+                  .index = i});
+    const WalkSight sight = walk.sight();
+    ASSERT_TRUE(sight.middle);
+    ASSERT_TRUE(sight.camera_from_board);
+    EXPECT_LT((sight.camera_from_board->translation() - pose.translation()).norm(), 0.002);
+    EXPECT_EQ(sight.missing.size(), kViewDirections - 1 - static_cast<std::size_t>(i));
+  }
+  EXPECT_EQ(walk.views().value().board.tags.size(), sheet.tags.size());
 }
 
 TEST(GrowingHull, WaitsForEightViewsAndDoubtsAnEmptySheet) {
