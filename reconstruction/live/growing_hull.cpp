@@ -48,7 +48,8 @@ bool GrowingHull::step(const WalkViews& walk) {
 
 Shape GrowingHull::next_shape(const WalkViews& walk) const {
   const ViewSet views = make_view_set(walk.camera, walk.views, 1);
-  const CoarseGrids grids{plane_grid(views, stage_region(walk.board), kMostTexels), kCells};
+  const CoarseGrids grids{plane_grid(views, stage_region(walk.board), kMostTexels),
+                          object_region(walk.board), kCells};
   CoarseHull found = carve_coarsely(walk.board, views, grids, pass_, shape_ ? &*shape_ : nullptr, 1,
                                     [](std::string_view, int, int) {});
   if (pass_ + 1 < kCoarsePasses) return likeliest_shape(session_, std::move(found.grid));

@@ -27,7 +27,7 @@ CoarseHull carve_coarsely(const capture::Board& board, const ViewSet& views,
   LearnedStage stage = learn_stage(board, views, grids.stage, masks, threads);
   const auto silhouettes = cut_out_all(stage, views, masks, OutlineDetail::pixels, threads,
                                        "outlines, pass " + std::to_string(pass + 1), progress);
-  Eigen::AlignedBox3f box = space_above(board, views);
+  Eigen::AlignedBox3f box = space_above(grids.region, views);
   if (before != nullptr) box = box.intersection(before->grown(kRoomAround));
   const float cell_m = box.sizes().maxCoeff() / static_cast<float>(grids.cells);
   box.min().z() = -cell_m;

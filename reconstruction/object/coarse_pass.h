@@ -8,6 +8,8 @@
 #include "reconstruction/stage/stage_map.h"
 #include "reconstruction/views/view_set.h"
 
+#include <Eigen/Geometry>
+
 namespace sheen::reconstruction {
 
 /// Passes until a coarse shape has settled.
@@ -15,8 +17,9 @@ inline constexpr int kCoarsePasses = 5;
 
 /// How finely a pass looks.
 struct CoarseGrids {
-  PlaneGrid stage;  ///< on which the sheet is learned
-  int cells = 0;    ///< of the hull, along its longest side
+  PlaneGrid stage;             ///< on which the sheet is learned
+  Eigen::AlignedBox2f region;  ///< above which the object is looked for, board frame, metres
+  int cells = 0;               ///< of the hull, along its longest side
 };
 
 /// What a pass found.

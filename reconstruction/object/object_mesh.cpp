@@ -6,6 +6,7 @@
 #include "core/numerics/median.h"
 #include "reconstruction/hull/visual_hull.h"
 #include "reconstruction/object/coarse_pass.h"
+#include "reconstruction/object/failure_cause.h"
 #include "reconstruction/object/outline_pass.h"
 #include "reconstruction/object/refusals.h"
 #include "reconstruction/object/shape.h"
@@ -56,15 +57,20 @@ class Measurement {
       shape = find_fine_shape(shape);
       return make_surface(shape);
     } catch (const core::Error&) {
-      refuse_paper_like(session_, paper_share_);  // the cause of whatever was found to be wrong
+      refuse_by_cause(session_, board_, coarse_views(), paper_share_, threads_);
       throw;
     }
   }
 
  private:
+  [[nodiscard]] ViewSet coarse_views() const {
+    return reduced(views_, kCoarseViews, kCoarseWidth_px, threads_);
+  }
+
   [[nodiscard]] Shape find_coarse_shape() {
-    const ViewSet views = reduced(views_, kCoarseViews, kCoarseWidth_px, threads_);
-    const CoarseGrids grids{plane_grid(views, stage_region(board_), kMostTexels), kCoarseCells};
+    const ViewSet views = coarse_views();
+    const CoarseGrids grids{plane_grid(views, stage_region(board_), kMostTexels),
+                            object_region(board_), kCoarseCells};
     std::optional<Shape> shape;
     for (int pass = 0; pass < kCoarsePasses; ++pass) {
       CoarseHull found = carve_coarsely(board_, views, grids, pass, shape ? &*shape : nullptr,

@@ -10,14 +10,23 @@
 namespace sheen::reconstruction {
 namespace {
 
-constexpr float kStageMargin = 0.35F;  // of the tags' extent, learned beyond it
+constexpr float kStageMargin = 0.35F;   // of the tags' extent, learned beyond it
+constexpr float kObjectMargin = 0.05F;  // and where an object is looked for
+
+Eigen::AlignedBox2f tags_and(float margin, const capture::Board& board) {
+  const Eigen::AlignedBox2f tags = tags_region(board);
+  const Eigen::Vector2f margin_m = margin * tags.sizes();
+  return {tags.min() - margin_m, tags.max() + margin_m};
+}
 
 }  // namespace
 
 Eigen::AlignedBox2f stage_region(const capture::Board& board) {
-  const Eigen::AlignedBox2f tags = tags_region(board);
-  const Eigen::Vector2f margin = kStageMargin * tags.sizes();
-  return {tags.min() - margin, tags.max() + margin};
+  return tags_and(kStageMargin, board);
+}
+
+Eigen::AlignedBox2f object_region(const capture::Board& board) {
+  return tags_and(kObjectMargin, board);
 }
 
 int one_in(std::size_t share, std::size_t views) {

@@ -17,6 +17,9 @@ namespace sheen::reconstruction {
 /// The part of the plane that is learned: the tags' and beyond, board frame, metres.
 Eigen::AlignedBox2f stage_region(const capture::Board& board);
 
+/// The part of it above which an object is looked for.
+Eigen::AlignedBox2f object_region(const capture::Board& board);
+
 /// Votes that may be wrong when one view in `share` may, of so many views; at least 1.
 int one_in(std::size_t share, std::size_t views);
 

@@ -2,9 +2,7 @@
 #include "reconstruction/object/shape.h"
 
 #include "core/concurrency/parallel_for.h"
-#include "reconstruction/hull/visual_hull.h"
 #include "reconstruction/object/refusals.h"
-#include "reconstruction/stage/print_check.h"
 #include "reconstruction/surface/marching_tetrahedra.h"
 #include "reconstruction/views/depth_image.h"
 
@@ -15,16 +13,16 @@
 namespace sheen::reconstruction {
 namespace {
 
-constexpr float kHighest = 0.8F;       // of the lowest camera: an object ends below
-constexpr float kSpaceMargin = 0.05F;  // of the tags' extent, where an object is looked for
-constexpr float kFoot = 0.06F;         // of the space: objects stand on the sheet
+constexpr float kHighest = 0.8F;  // of the lowest camera: an object ends below
+constexpr float kFoot = 0.06F;    // of the space: objects stand on the sheet
 constexpr int kMaskGrown_px = 2;
+constexpr float kRival = 4;  // times as large an object may be as another piece that is kept
+
+}  // namespace
 
 Components standing_in(DistanceGrid& grid) {
   return find_standing(kFoot * grid.box().sizes().maxCoeff(), grid);
 }
-
-}  // namespace
 
 Eigen::AlignedBox3f Shape::grown(float share) const {
   const Eigen::Vector3f margin =
@@ -32,10 +30,7 @@ Eigen::AlignedBox3f Shape::grown(float share) const {
   return {box.min() - margin, box.max() + margin};
 }
 
-Eigen::AlignedBox3f space_above(const capture::Board& board, const ViewSet& views) {
-  const Eigen::AlignedBox2f tags = tags_region(board);
-  const Eigen::Vector2f margin = kSpaceMargin * tags.sizes();
-  const Eigen::AlignedBox2f region(tags.min() - margin, tags.max() + margin);
+Eigen::AlignedBox3f space_above(const Eigen::AlignedBox2f& region, const ViewSet& views) {
   float top = region.sizes().maxCoeff();
   for (const View& view : views.views) top = std::min(top, kHighest * view.project.eye().z());
   return {Eigen::Vector3f(region.min().x(), region.min().y(), 0),
@@ -64,11 +59,21 @@ Shape likeliest_shape(const std::filesystem::path& session, DistanceGrid grid) {
   // What reaches the space's sides goes on beyond them.
   const Eigen::Vector3f margin(1.5F * grid.cell_m(), 1.5F * grid.cell_m(), -1);
   const Eigen::AlignedBox3f inner(grid.box().min() + margin, grid.box().max() - margin);
-  std::size_t kept = 0;
-  while (kept < components.parts.size() && !inner.contains(components.parts[kept].box)) ++kept;
-  if (kept == components.parts.size()) kept = 0;
-  keep_component(components, static_cast<int>(kept), grid);
-  return {std::move(grid), components.parts[kept].box};
+  std::size_t first = 0;
+  while (first < components.parts.size() && !inner.contains(components.parts[first].box)) ++first;
+  if (first == components.parts.size()) first = 0;
+  const Component& object = components.parts[first];
+  std::vector<int> kept{static_cast<int>(first)};
+  Eigen::AlignedBox3f box = object.box;
+  for (std::size_t i = first + 1; i < components.parts.size(); ++i) {
+    const Component& other = components.parts[i];
+    if (kRival * static_cast<float>(other.points) < static_cast<float>(object.points)) break;
+    if (!inner.contains(other.box)) continue;
+    kept.push_back(static_cast<int>(i));
+    box.extend(other.box);
+  }
+  keep_components(components, kept, grid);
+  return {std::move(grid), box};
 }
 
 Shape only_shape(const std::filesystem::path& session, const capture::Board& board,
@@ -76,7 +81,7 @@ Shape only_shape(const std::filesystem::path& session, const capture::Board& boa
   const Components components = standing_in(grid);
   refuse_empty_sheet(session, components);
   refuse_what_stands_there(session, board, components);
-  keep_component(components, 0, grid);
+  keep_components(components, {0}, grid);
   return {std::move(grid), components.parts.front().box};
 }
 

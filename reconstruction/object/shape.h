@@ -2,7 +2,7 @@
 #pragma once
 
 #include "capture/pose/board.h"
-#include "reconstruction/hull/distance_grid.h"
+#include "reconstruction/hull/visual_hull.h"
 #include "reconstruction/views/view_set.h"
 
 #include <Eigen/Geometry>
@@ -22,14 +22,18 @@ struct Shape {
   [[nodiscard]] Eigen::AlignedBox3f grown(float share) const;
 };
 
-/// Where an object may be: above the sheet, below every camera.
-Eigen::AlignedBox3f space_above(const capture::Board& board, const ViewSet& views);
+/// Above a part of the sheet (board frame, metres), below every camera: where an object may be.
+Eigen::AlignedBox3f space_above(const Eigen::AlignedBox2f& region, const ViewSet& views);
 
 /// Where each view sees a shape, grown a little (CV_8UC1 per view).
 std::vector<cv::Mat> masks_of(const Shape& shape, const ViewSet& views, int threads);
 
+/// What stands on the sheet; the rest of the grid's inside is turned to the outside.
+Components standing_in(DistanceGrid& grid);
+
 /// While the sheet is half known, pieces of it may float about: the largest piece that stands on it
-/// and does not go on beyond the grid. Throws core::Error (bad_input) that names `session` when
+/// and does not go on beyond the grid, and others of nearly its size; they are gone after the next
+/// pass, or are objects, too. Throws core::Error (bad_input) that names `session` when
 /// there is none.
 Shape likeliest_shape(const std::filesystem::path& session, DistanceGrid grid);
 

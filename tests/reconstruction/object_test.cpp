@@ -260,7 +260,7 @@ TEST(MeasuredObject, IsRefusedForWhatIsWrong) {
       [](int index) {
         return ball_moved_by({0, index < 12 ? -0.03 : 0.03, 0});
       },
-      "the object's outlines contradict each other");
+      "the object stands elsewhere in the second half");
   expect_refused(
       [](int) {
         return [](const Eigen::Vector3d& eye, const Eigen::Vector3d& direction) {
