@@ -136,8 +136,33 @@ FitOutcome fit_live(const ReplayOptions& fit, capture::CameraRecording& recordin
   return fit_session(fit, capture::open_session(fit.session), recording.frames(), context, &live);
 }
 
-/// Looks at a walk whose object has no mesh yet until its recording has ended. Throws core::Error
-/// (bad_input) when its first images show another board.
+/// Shows a walk what its camera has recorded, until the recording has ended.
+void look_on(reconstruction::LiveWalk& walk, const std::filesystem::path& session,
+             capture::CameraRecording& recording, const CommandContext& context) {
+  TerminalSink sink(context);
+  const auto frames = recording.frames();
+  int count = 0;
+  while (!recording.status().has_ended && !recording.status().disk_fault) {
+    const auto frame = frames->next();
+    if (!frame) break;
+    try {
+      walk.look_at(*frame);
+    } catch (const core::Error&) {  // another board in the first images: nothing is lost
+      recording.stop();
+      std::error_code no_throw;
+      std::filesystem::remove_all(session, no_throw);
+      throw;
+    }
+    constexpr std::size_t all = reconstruction::kViewDirections;
+    sink.progress(
+        {"recording", ++count, 0,
+         fmt::format("{} of {} directions seen", all - walk.sight().missing.size(), all)});
+  }
+  recording.stop();
+}
+
+/// Looks at a walk of which something is not known while it is recorded, in a window if one is
+/// wanted. Throws core::Error (bad_input) when its first images show another board.
 void watch_walk(const CaptureOptions& options, const capture::SessionSetup& setup,
                 capture::CameraRecording& recording, std::atomic<bool>& window_closed,
                 const CommandContext& context) {
@@ -147,21 +172,7 @@ void watch_walk(const CaptureOptions& options, const capture::SessionSetup& setu
                                               : std::optional(capture::read_board(setup.board)),
                                  .camera = setup.camera,
                                  .camera_is_guessed = setup.camera_is_guessed});
-  const auto look = [&] {
-    TerminalSink sink(context);
-    const auto frames = recording.frames();
-    int count = 0;
-    while (!recording.status().has_ended && !recording.status().disk_fault) {
-      const auto frame = frames->next();
-      if (!frame) break;
-      walk.look_at(*frame);
-      sink.progress({"recording", ++count, 0,
-                     fmt::format("{} of {} directions seen",
-                                 reconstruction::kViewDirections - walk.sight().missing.size(),
-                                 reconstruction::kViewDirections)});
-    }
-    recording.stop();
-  };
+  const auto look = [&] { look_on(walk, options.session, recording, context); };
   if (!options.fit.preview) return look();
   const reconstruction::LiveHull hull(walk, options.session);
   run_walk({.title = options.session.filename().string() + " \u2013 Sheen",
@@ -171,26 +182,13 @@ void watch_walk(const CaptureOptions& options, const capture::SessionSetup& setu
            look, [&window_closed] { window_closed = true; });
 }
 
-/// Records a walk of which something is not known, finds it from the recording and fits that.
-FitOutcome fit_walk(ReplayOptions fit, const CaptureOptions& options,
-                    const capture::SessionSetup& setup, capture::CameraRecording& recording,
-                    std::optional<core::FolderLock>& lock, std::atomic<bool>& window_closed,
-                    const CommandContext& context) {
-  try {
-    watch_walk(options, setup, recording, window_closed, context);
-  } catch (const core::Error&) {  // as soon as it began: nothing is lost
-    recording.stop();
-    lock.reset();
-    std::error_code no_throw;
-    std::filesystem::remove_all(options.session, no_throw);
-    throw;
-  }
-  lock.reset();  // whoever finds what is missing writes into the session
+/// Finds what is missing of a recorded walk and fits it.
+FitOutcome fit_walk(ReplayOptions fit, const CommandContext& context) {
   fit.preview = false;
   try {
     return fit_recording(fit, context);
   } catch (const core::Error&) {
-    context.note(fmt::format("note: the recording is kept in {}", options.session.string()));
+    context.note(fmt::format("note: the recording is kept in {}", fit.session.string()));
     throw;
   }
 }
@@ -238,9 +236,13 @@ void capture_session(std::unique_ptr<capture::Camera> camera, const CaptureOptio
   // Fit.
   FitOutcome outcome;
   try {
-    outcome = is_complete(setup)
-                  ? fit_live(fit, recording, window_closed, context)
-                  : fit_walk(fit, options, setup, recording, lock, window_closed, context);
+    if (is_complete(setup)) {
+      outcome = fit_live(fit, recording, window_closed, context);
+    } else {
+      watch_walk(options, setup, recording, window_closed, context);
+      lock.reset();  // whoever finds what is missing writes into the session
+      outcome = fit_walk(fit, context);
+    }
   } catch (const core::Error&) {
     recording.stop();
     if (const auto fault = recording.status().camera_fault) throw core::Error(*fault);

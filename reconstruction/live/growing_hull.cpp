@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "reconstruction/live/growing_hull.h"
 
-#include "core/diagnostics/error.h"
 #include "reconstruction/object/coarse_pass.h"
 #include "reconstruction/object/outline_pass.h"
 #include "reconstruction/object/refusals.h"
 #include "reconstruction/surface/marching_tetrahedra.h"
 
 #include <cmath>
+#include <exception>
 #include <utility>
 
 namespace sheen::reconstruction {
@@ -39,7 +39,7 @@ bool GrowingHull::step(const WalkViews& walk) {
     shape_ = next_shape(walk);
     ++pass_;
     show(*shape_);
-  } catch (const core::Error& error) {
+  } catch (const std::exception& error) {  // a hull that cannot be made ends no capture
     news_.doubt = error.what();
     pass_ = kCoarsePasses;  // until there are more views
   }

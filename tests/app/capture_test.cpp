@@ -100,6 +100,18 @@ TEST_F(LiveCapture, WithoutACameraFileGivesTheModelThatAReplayGives) {
   EXPECT_TRUE(this->model() == read_file(model));
 }
 
+TEST_F(LiveCapture, RefusesAnotherBoardThanTheDefaultSheet) {
+  options_.like.clear();
+  try {
+    app::capture_session(std::make_unique<PlayingCamera>(), options_, context_);
+    FAIL() << "the sample's tags are none of the default sheet's";
+  } catch (const core::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("its first image shows another board"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 /// Says of itself that its raw images are of odd width.
 class OddCamera : public PlayingCamera {
  public:
@@ -166,6 +178,9 @@ TEST_F(LiveCapture, RefusesWhatDoesNotFitTogether) {
   };
   options_.board_from_object = std::vector<double>(16, 0.5);
   expect_refused("--T-stage-object");
+  options_.like.clear();
+  expect_refused("--T-stage-object: places a mesh, and there is none");
+  options_.like = sample_session();
   options_.board_from_object.clear();
   options_.mesh = sample_session() / "camera.yaml";
   expect_refused("camera.yaml");
