@@ -130,12 +130,12 @@ capture::SessionSetup read_setup(const CaptureOptions& options) {
   if (!options.board.empty()) setup.board = options.board;
   if (!options.mesh.empty()) setup.mesh = options.mesh;
   if (!options.board_from_object.empty()) {
+    if (setup.mesh.empty()) {
+      throw core::bad_input("--T-stage-object", "places a mesh, and there is none",
+                            "give --mesh, or leave it out: a measured mesh lies in the board's "
+                            "frame");
+    }
     setup.board_from_object = transform_of(options.board_from_object);
-  }
-  if (!options.board_from_object.empty() && setup.mesh.empty()) {
-    throw core::bad_input(
-        "--T-stage-object", "places a mesh, and there is none",
-        "give --mesh, or leave it out: a measured mesh lies in the board's frame");
   }
   setup.camera_is_guessed = setup.camera.width_px() == 0;
   return setup;

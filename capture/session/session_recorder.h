@@ -30,7 +30,8 @@ struct SessionSetup {
   bool camera_is_guessed = false;  ///< only the images' size is known of it; it is not written
 };
 
-/// Records a session that survives a crash. The folder opens as a session before the first image;
+/// Records a session that survives a crash. The folder opens as a session, unfinished where
+/// something is not known, before the first image;
 /// images and their time stamps are appended as they come and flushed to the disk twice a second.
 /// After a crash all but the last second is there. Whoever adds images never waits for the disk:
 /// one thread writes, another flushes.

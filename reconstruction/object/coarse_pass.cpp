@@ -9,8 +9,7 @@
 namespace sheen::reconstruction {
 namespace {
 
-constexpr std::size_t kOneGuessIn = 6;  // view may be wrong where the stage is guessed
-constexpr float kRoomAround = 0.3F;     // the shape before: of its longest side
+constexpr float kRoomAround = 0.3F;  // the shape before: of its longest side
 
 CarvingVotes votes_of_pass(int pass, std::size_t views) {
   constexpr std::array<std::size_t, kCoarsePasses> shares{8, 12, 20, 24, 24};

@@ -10,13 +10,14 @@
 namespace sheen::reconstruction {
 namespace {
 
-constexpr double kMostTexels = 2e5;
-constexpr int kCells = 48;
+constexpr double kCauseTexels = 2e5;
+constexpr int kCauseCells = 48;
 
 /// What stands on a part of the sheet by a first pass over some of the views.
 Components standing_on(const Eigen::AlignedBox2f& region, const capture::Board& board,
                        const ViewSet& views, int threads) {
-  const CoarseGrids grids{plane_grid(views, stage_region(board), kMostTexels), region, kCells};
+  const CoarseGrids grids{plane_grid(views, stage_region(board), kCauseTexels), region,
+                          kCauseCells};
   CoarseHull found =
       carve_coarsely(board, views, grids, 0, nullptr, threads, [](std::string_view, int, int) {});
   return standing_in(found.grid);

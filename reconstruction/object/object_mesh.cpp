@@ -26,8 +26,7 @@ namespace {
 constexpr double kMostTexels = 1e6;
 constexpr std::size_t kCoarseViews = 40;  // of the first passes
 constexpr int kCoarseWidth_px = 480;
-constexpr std::size_t kOneViewIn = 32;   // may be wrong in the last pass,
-constexpr std::size_t kOneGuessIn = 6;   // where the stage is guessed
+constexpr std::size_t kOneViewIn = 32;   // may be wrong in the last pass
 constexpr float kOutlineBlur_px = 1.5F;  // by which one outline may lie wrong
 constexpr int kCoarseCells = 72;         // along the longest side
 constexpr std::size_t kMostViews = 120;  // of the last pass

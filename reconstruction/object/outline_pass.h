@@ -20,6 +20,9 @@ Eigen::AlignedBox2f stage_region(const capture::Board& board);
 /// The part of it above which an object is looked for.
 Eigen::AlignedBox2f object_region(const capture::Board& board);
 
+/// One view in so many may be wrong where the stage is only guessed.
+inline constexpr std::size_t kOneGuessIn = 6;
+
 /// Votes that may be wrong when one view in `share` may, of so many views; at least 1.
 int one_in(std::size_t share, std::size_t views);
 
