@@ -198,6 +198,15 @@ TEST_F(LiveCapture, RefusesWhatDoesNotFitTogether) {
   EXPECT_EQ(read_file(options_.session / "notes.txt"), "mine");
 }
 
+TEST(CommandContext, SaysNothingTwice) {
+  app::CommandContext context;
+  context.quiet = true;
+  context.note("note: colours are taken for sRGB");
+  context.note("note: 2 damaged frames were left out");
+  context.note("note: colours are taken for sRGB");
+  EXPECT_EQ(context.notes->lines.size(), 2U);
+}
+
 TEST(CaptureCommand, SaysWhichDeviceIsMissing) {
   const TemporaryFolder folder;
   const ProgramRun run = run_sheen({"capture", "/dev/no-such-camera", "-o", folder.path() / "s",
