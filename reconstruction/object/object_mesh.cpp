@@ -30,7 +30,6 @@ constexpr std::size_t kOneViewIn = 32;   // may be wrong in the last pass
 constexpr float kOutlineBlur_px = 1.5F;  // by which one outline may lie wrong
 constexpr int kCoarseCells = 72;         // along the longest side
 constexpr std::size_t kMostViews = 120;  // of the last pass
-constexpr std::size_t kStageViews = 60;  // that the stage is learned from, at full size
 constexpr int kFineCells = 160;
 constexpr float kSmoothLimit_cells = 3;
 constexpr int kSmoothRounds = 2;      // against the steps of pixels
@@ -83,12 +82,10 @@ class Measurement {
   }
 
   [[nodiscard]] Shape find_fine_shape(const Shape& coarse) {
-    const ViewSet some = reduced(views_, kStageViews, views_.camera.width_px(), threads_);
     const PlaneGrid plane = plane_grid(views_, stage_region(board_), kMostTexels);
-    progress_("learning the sheet", 0, 1);
-    LearnedStage stage =
-        learn_stage(board_, some, plane, masks_of(coarse, some, threads_), threads_);
     const auto masks = masks_of(coarse, views_, threads_);
+    progress_("learning the sheet", 0, 1);
+    LearnedStage stage = learn_stage(board_, views_, plane, masks, threads_);
     stage.gains = estimate_gains(views_, stage.map, masks, threads_);
     progress_("learning the sheet", 1, 1);
     const auto silhouettes = cut_out_all(stage, views_, masks, OutlineDetail::matted, threads_,
