@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/session_camera.h"
 
-#include "capture/pose/board_diagnosis.h"
 #include "capture/pose/board_tags.h"
 #include "capture/source/image_folder_source.h"
 #include "core/diagnostics/error.h"
@@ -26,19 +25,6 @@ struct SeenTags {
   int frames_with_two = 0;  ///< of those looked at
 };
 
-/// Says so when an image shows tags, but not the default sheet's.
-void refuse_other_board(const capture::Session& session, const capture::Board& sheets,
-                        const capture::Frame& frame) {
-  capture::BoardDiagnosis diagnosis(sheets, session.camera);
-  diagnosis.look_at(frame);
-  const capture::PoseCause cause = diagnosis.cause(capture::PoseRejection::no_tags);
-  if (cause.suspect != capture::PoseSuspect::board) return;
-  throw core::bad_input(
-      session.folder,
-      "its first image shows another board than the sheet of sheen board, which " + cause.fault,
-      "give the file of that board: --board board.yaml");
-}
-
 SeenTags read_tags(const capture::Session& session, const capture::Board& board,
                    const FrameChoice& choice, ProgressSink& sink) {
   capture::BoardTagFinder finder(board, session.camera);
@@ -51,7 +37,7 @@ SeenTags read_tags(const capture::Session& session, const capture::Board& board,
     finder.look_at(*frame);
     Tags tags = finder.find();
     if (tags.empty() && seen.frames == 1 && !session.board) {
-      refuse_other_board(session, board, *frame);
+      capture::refuse_other_board(session.folder, session.camera, *frame);
     }
     seen.frames_with_two += tags.size() >= 2 ? 1 : 0;
     seen.views.add(std::move(tags));

@@ -40,7 +40,7 @@ void add_camera_options(Command command, CaptureOptions& options) {
             if (!width || !height) throw UsageError("--size: write it like 1280x720");
             options.camera.mode.size = capture::ImageSize{*width, *height};
           },
-          "Image size (default: that of the camera file)")
+          "Image size (default: that of the camera file, else the camera's usual)")
       .type("WxH");
   command.option("--fps", options.camera.mode.fps, "Frame rate (default: the camera's largest)")
       .positive();
@@ -88,14 +88,24 @@ Eigen::Isometry3d transform_of(const std::vector<double>& numbers) {
 
 void add_capture_options(Command command, CaptureOptions& options) {
   add_camera_options(command, options);
-  command.option("-o,--output", options.session, "Session folder to record").type("SESSION");
+  command
+      .option("-o,--output", options.session,
+              "Session folder to record; NAME.glb: the model, its session is the folder NAME")
+      .type("SESSION");
   command
       .option("--like", options.like,
               "Take camera file, board, mesh and the object's place from this session")
       .type("SESSION");
-  command.option("--camera", options.camera_file, "Camera file, from sheen calibrate").type("FILE");
-  command.option("--board", options.board, "board.yaml: where the tags lie").type("FILE");
-  command.option("--mesh", options.mesh, "The object, in metres").type("FILE");
+  command
+      .option("--camera", options.camera_file,
+              "Camera file, from sheen calibrate (default: found from the walk)")
+      .type("FILE");
+  command
+      .option("--board", options.board,
+              "board.yaml: where the tags lie (default: the sheet of sheen board)")
+      .type("FILE");
+  command.option("--mesh", options.mesh, "The object, in metres (default: measured from the walk)")
+      .type("FILE");
   command
       .option("--T-stage-object", options.board_from_object,
               "Where the object stands: 16 numbers row by row (default: as in --like, else the "
@@ -120,15 +130,14 @@ capture::SessionSetup read_setup(const CaptureOptions& options) {
   if (!options.board.empty()) setup.board = options.board;
   if (!options.mesh.empty()) setup.mesh = options.mesh;
   if (!options.board_from_object.empty()) {
+    if (setup.mesh.empty()) {
+      throw core::bad_input("--T-stage-object", "places a mesh, and there is none",
+                            "give --mesh, or leave it out: a measured mesh lies in the board's "
+                            "frame");
+    }
     setup.board_from_object = transform_of(options.board_from_object);
   }
-  const auto require = [](bool is_there, const char* option) {
-    if (is_there) return;
-    throw core::bad_input(option, "is missing", "give it, or a session to take it from (--like)");
-  };
-  require(setup.camera.width_px() > 0, "--camera");
-  require(!setup.board.empty(), "--board");
-  require(!setup.mesh.empty(), "--mesh");
+  setup.camera_is_guessed = setup.camera.width_px() == 0;
   return setup;
 }
 

@@ -28,8 +28,8 @@ struct CaptureOptions {
 
 void add_capture_options(Command command, CaptureOptions& options);
 
-/// What the recording will say besides its frames. Throws core::Error (bad_input) when something is
-/// neither given nor in `like`.
+/// What the recording will say besides its frames, as given or as in `like`. Without a camera file
+/// `camera` is of no size. Throws core::Error (bad_input).
 capture::SessionSetup read_setup(const CaptureOptions& options);
 
 }  // namespace sheen::app

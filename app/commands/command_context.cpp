@@ -12,6 +12,7 @@
 namespace sheen::app {
 void CommandContext::note(const std::string& line) const {
   const std::scoped_lock lock(notes->mutex);
+  if (std::ranges::find(notes->lines, line) != notes->lines.end()) return;
   notes->lines.push_back(line);
   if (!quiet) std::fprintf(stderr, "%s\n", line.c_str());
 }

@@ -33,7 +33,8 @@ struct CommandContext {
   }
 
   /// One line on stderr, unless --quiet; it also stands in the report, so that doubts do not get
-  /// lost. From any thread.
+  /// lost. What was said already, by an earlier step over the same frames, is not said again. From
+  /// any thread.
   void note(const std::string& line) const;
 
   /// Throws core::Error (bad_input) when the report or one of `outputs` (empty paths: not asked

@@ -100,12 +100,13 @@ std::string kept(const std::filesystem::path& file) {
   return fmt::format("kept     {}\n", capture::keep_before(file, "mesh").string());
 }
 
-std::string save(const MeshOptions& options, const reconstruction::ObjectMesh& found) {
+std::string save(const MeshOptions& options, const capture::Session& session,
+                 const reconstruction::ObjectMesh& found) {
   const auto output = output_of(options);
   std::string lines = kept(output);
   if (options.output.empty()) {
     const auto session_file = options.session / "session.json";
-    lines += kept(session_file);
+    if (!session.mesh.empty()) lines += kept(session_file);
     core::write_ply(output, found.mesh, found.confidence);
     capture::write_object(session_file, session_file, output.filename().string());
   } else {
@@ -161,7 +162,7 @@ MeshAnswer measure(const MeshOptions& options, capture::Session session,
         sink.progress({step, done, total});
       });
   if (!options.image.empty()) draw_outlines(options, session, found.mesh, images);
-  const std::string lines = save(options, found);
+  const std::string lines = save(options, session, found);
   return {to_json(found), describe(found) + lines};
 }
 

@@ -257,20 +257,28 @@ void run_replay(ReplayOptions options, const CommandContext& context) {
   } else if (!options.new_session.empty()) {
     throw UsageError("--session-out is for a video or pictures, this is a session already");
   }
+  const FitOutcome outcome = fit_recording(options, context, [&made] {
+    if (made) made->keep();
+  });
+  context.publish(outcome.document, outcome.text);
+}
+
+}  // namespace
+
+FitOutcome fit_recording(const ReplayOptions& options, const CommandContext& context,
+                         const std::function<void()>& on_complete) {
   capture::Session session;
   const WalkAnswer walk = complete_session(options, session, context);
-  if (made) made->keep();
+  if (on_complete) on_complete();
   if (!options.note.empty()) context.note(options.note);
   auto frames = capture::open_frames(session, options.reconstruction.frames.start,
                                      options.reconstruction.frames.end);
   if (options.preview) frames = capture::at_recorded_pace(std::move(frames));
-
   FitOutcome outcome = fit_session(options, session, std::move(frames), context);
   if (!walk.document.is_null()) outcome.document["walk"] = walk.document;
-  context.publish(outcome.document, walk.text + outcome.text);
+  outcome.text = walk.text + outcome.text;
+  return outcome;
 }
-
-}  // namespace
 
 FitOutcome fit_session(const ReplayOptions& options, const capture::Session& session,
                        std::unique_ptr<capture::FrameSource> frames, const CommandContext& context,

@@ -31,6 +31,12 @@ FitOutcome fit_session(const ReplayOptions& options, const capture::Session& ses
                        std::unique_ptr<capture::FrameSource> frames, const CommandContext& context,
                        const LiveCamera* camera = nullptr);
 
+/// Fits the recording of the session that the options name. What it lacks, camera, board or mesh,
+/// is found from its images first and kept in it; `on_complete` (may be empty) hears when it is
+/// there.
+FitOutcome fit_recording(const ReplayOptions& options, const CommandContext& context,
+                         const std::function<void()>& on_complete = {});
+
 /// `sheen replay SESSION -o MODEL.glb`: a recording becomes a light field.
 void add_replay_command(CommandLine& program, CommandContext& context);
 

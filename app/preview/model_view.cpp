@@ -152,6 +152,10 @@ void ModelView::draw_cameras(const Overlay& overlay, const CameraTrail& trail,
                       0.7f * line);
     }
   }
+  for (const Eigen::Vector3d& direction : trail.missing) {
+    overlay.dot(centre + kCamerasAt * radius_m * direction, 2 * line,
+                colour_of(theme::kWarning, 0.7f));
+  }
   const Eigen::Isometry3d present = brought_near(*trail.present, factor);
   overlay.frustum(*trail.lens, present, depth_m, colour_of(theme::kText, 0.95f), line);
   if (!trail.hint) return;

@@ -21,6 +21,8 @@ struct CameraTrail {
   std::vector<Eigen::Isometry3d> poses;     ///< camera_from_object, in order
   std::optional<Eigen::Isometry3d> present;
   std::optional<Eigen::Vector3d> hint;  ///< where to stand next, object frame
+  /// Directions from the object, unit length, from which nobody has looked though somebody should.
+  std::vector<Eigen::Vector3d> missing;
 };
 
 /// The object seen by a camera that the mouse turns.

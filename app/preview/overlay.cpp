@@ -54,6 +54,10 @@ void Overlay::path(const std::vector<Eigen::Vector3d>& places, ImU32 colour,
   }
 }
 
+void Overlay::dot(const Eigen::Vector3d& place_in_object, float radius, ImU32 colour) const {
+  if (const auto middle = place(place_in_object)) list_.AddCircleFilled(*middle, radius, colour);
+}
+
 void Overlay::arrow(const std::vector<Eigen::Vector3d>& places, ImU32 colour,
                     float thickness) const {
   path(places, colour, thickness);

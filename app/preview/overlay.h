@@ -22,6 +22,7 @@ class Overlay {
   void frustum(const core::CameraModel& lens, const Eigen::Isometry3d& lens_from_object,
                double depth_m, ImU32 colour, float thickness) const;
   void path(const std::vector<Eigen::Vector3d>& places, ImU32 colour, float thickness) const;
+  void dot(const Eigen::Vector3d& place_in_object, float radius, ImU32 colour) const;
   /// A path with a head at its end.
   void arrow(const std::vector<Eigen::Vector3d>& places, ImU32 colour, float thickness) const;
 

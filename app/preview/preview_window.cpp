@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "app/preview/preview_window.h"
 
+#include "app/preview/snapshot.h"
+#include "app/preview/window_layout.h"
 #include "core/diagnostics/error.h"
 #include "core/geometry/tangent_frame.h"
-#include "core/image/write_image.h"
 #include "fitting/patch_light_field.h"
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
@@ -14,24 +13,15 @@
 namespace sheen::app {
 namespace {
 
-constexpr int kWidth = 1280;
-constexpr int kHeight = 720;
-constexpr float kPanelWidth = 292;    // in units of the content scale
-constexpr float kInsetWidth = 0.34f;  // of the large view
-constexpr float kMargin = 14;         // in units of the content scale
 constexpr double kUndo_s = 5;
 constexpr double kFineAfter_s = 0.15;  // stillness after which the model is drawn finer
 constexpr std::size_t kBytesPerRedraw = 512 * 1024;
-
-constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                                    ImGuiWindowFlags_NoSavedSettings |
-                                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav;
 
 }  // namespace
 
 PreviewWindow::PreviewWindow(const PreviewSubject& subject)
     : subject_(subject),
-      window_(subject.title, kWidth, kHeight),
+      window_(subject.title, layout::kWidth, layout::kHeight),
       painter_(window_, window_.gl(), subject.mesh),
       model_view_(window_.gl(), subject.mesh, subject.up, subject.live != nullptr),
       camera_view_(window_.gl()) {
@@ -111,12 +101,12 @@ void PreviewWindow::paint() {
 
 void PreviewWindow::lay_out() {
   const ImVec2 display = ImGui::GetIO().DisplaySize;
-  const float panel = std::min(kPanelWidth * window_.content_scale(), 0.5f * display.x);
+  const float panel = std::min(layout::kPanelWidth * window_.content_scale(), 0.5f * display.x);
   const ImVec2 view(display.x - panel, display.y);
   show_views(view);
   show_panel({view.x, 0}, {panel, display.y});
   if (const auto patch = patch_news()) {
-    const float margin = kMargin * window_.content_scale();
+    const float margin = layout::kMargin * window_.content_scale();
     show_patch_card(*patch, {view.x - margin, view.y - margin});
   }
   if (state_.help) show_help(subject_.live != nullptr);
@@ -127,7 +117,7 @@ void PreviewWindow::show_views(const ImVec2& size) {
   ImGui::SetNextWindowSize(size);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{0, 0});
   ImGui::Begin("views", nullptr,
-               kFixed | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground);
+               layout::kFixed | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground);
   ImGui::PopStyleVar();
   const bool has_camera = subject_.live != nullptr;
   const bool camera_is_large = has_camera && state_.camera_is_large;
@@ -138,9 +128,9 @@ void PreviewWindow::show_views(const ImVec2& size) {
   }
   if (has_camera) {
     // The other one stands in the lower left corner, framed.
-    const float margin = kMargin * window_.content_scale();
+    const float margin = layout::kMargin * window_.content_scale();
     const auto& lens = subject_.live->camera();
-    const float width = kInsetWidth * size.x;
+    const float width = layout::kInsetWidth * size.x;
     const float height =
         width * static_cast<float>(lens.height_px()) / static_cast<float>(lens.width_px());
     const ImVec2 corner(margin, size.y - margin - height);
@@ -159,7 +149,7 @@ void PreviewWindow::show_views(const ImVec2& size) {
 void PreviewWindow::show_panel(const ImVec2& corner, const ImVec2& size) {
   ImGui::SetNextWindowPos(corner);
   ImGui::SetNextWindowSize(size);
-  ImGui::Begin("panel", nullptr, kFixed & ~ImGuiWindowFlags_NoScrollbar);
+  ImGui::Begin("panel", nullptr, layout::kFixed & ~ImGuiWindowFlags_NoScrollbar);
   PanelContents contents;
   if (!note_.empty()) status_.note = note_;
   contents.live = subject_.live != nullptr ? &status_ : nullptr;
@@ -255,13 +245,7 @@ void PreviewWindow::save_snapshot() {
   image_ = window_.image();
   if (subject_.snapshot_folder.empty()) return;
   try {
-    // Never over an older one.
-    std::filesystem::path file;
-    do {
-      file = subject_.snapshot_folder / fmt::format("sheen-{:03}.png", ++snapshots_);
-    } while (std::filesystem::exists(file));
-    core::write_image(file, image_);
-    note_ = "Snapshot " + file.filename().string();
+    note_ = "Snapshot " + write_snapshot(image_, subject_.snapshot_folder).filename().string();
   } catch (const core::Error& error) {
     note_ = error.what();
   }

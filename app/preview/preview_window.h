@@ -61,7 +61,6 @@ class PreviewWindow {
   bool has_model_ = false;
   std::shared_ptr<const std::vector<fitting::guidance::DirectionCells>> reachable_;
   bool snapshot_wanted_ = false;
-  int snapshots_ = 0;
   std::string note_;
   cv::Mat image_;
   RedrawPace pace_;

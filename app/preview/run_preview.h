@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/preview/preview_subject.h"
+#include "app/preview/walk_subject.h"
 
 #include <functional>
 
@@ -20,5 +21,11 @@ void run_viewer(const PreviewSubject& subject);
 /// Exceptions of the work come out here, at once.
 void run_preview(const PreviewSubject& subject, const std::function<void()>& work,
                  const std::function<void()>& on_closed);
+
+/// Shows a walk while `work`, on a thread of its own, lets the subject's walk look at its frames.
+/// Returns when the work has ended; the window is closed then, or earlier by somebody who has
+/// finished, which `on_closed` hears. Exceptions of the work come out here.
+void run_walk(const WalkSubject& subject, const std::function<void()>& work,
+              const std::function<void()>& on_closed);
 
 }  // namespace sheen::app

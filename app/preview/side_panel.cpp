@@ -3,6 +3,7 @@
 
 #include "app/preview/hemisphere_plot.h"
 #include "app/preview/object_painter.h"
+#include "app/preview/panel_words.h"
 
 #include <fmt/format.h>
 
@@ -14,40 +15,6 @@ namespace sheen::app {
 namespace {
 
 using Clicks = std::vector<ViewCommand>;
-
-void text(const ImVec4& colour, const std::string& words) {
-  ImGui::PushStyleColor(ImGuiCol_Text, colour);
-  ImGui::TextUnformatted(words.c_str());
-  ImGui::PopStyleColor();
-}
-
-void wrapped(const ImVec4& colour, const std::string& words) {
-  ImGui::PushTextWrapPos(0);
-  text(colour, words);
-  ImGui::PopTextWrapPos();
-}
-
-void gap(float lines) {
-  ImGui::Dummy({0, lines * ImGui::GetFontSize()});
-}
-
-/// Name at the left, value at the right.
-void row(const std::string& name, const std::string& value, const ImVec4& colour = theme::kText) {
-  text(theme::kQuiet, name);
-  const float width = ImGui::CalcTextSize(value.c_str()).x;
-  ImGui::SameLine(std::max(ImGui::GetContentRegionMax().x - width, 0.0f));
-  text(colour, value);
-}
-
-void heading(const std::string& words) {
-  gap(0.4f);
-  text(theme::kText, words);
-  const ImVec2 from = ImGui::GetCursorScreenPos();
-  ImGui::GetWindowDrawList()->AddLine({from.x, from.y - 2},
-                                      {from.x + ImGui::GetContentRegionAvail().x, from.y - 2},
-                                      ImGui::GetColorU32(theme::kRaised));
-  ImGui::Dummy({0, 2});
-}
 
 void button(const char* label, ViewCommand command, float width, Clicks& clicks) {
   if (ImGui::Button(label, {width, 0})) clicks.push_back(command);

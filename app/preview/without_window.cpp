@@ -26,4 +26,9 @@ void run_preview(const PreviewSubject& /*subject*/, const std::function<void()>&
   throw no_window();
 }
 
+void run_walk(const WalkSubject& /*subject*/, const std::function<void()>& /*work*/,
+              const std::function<void()>& /*on_closed*/) {
+  throw no_window();
+}
+
 }  // namespace sheen::app

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "capture/board_print/default_board.h"
 
+#include "capture/pose/board_diagnosis.h"
+#include "core/diagnostics/error.h"
+
 #include <algorithm>
 
 namespace sheen::capture {
@@ -49,6 +52,18 @@ std::optional<DefaultSheet> recognise_default_sheet(const std::vector<TagDetecti
     most = std::max(most, count);
   }
   return best;
+}
+
+void refuse_other_board(const std::filesystem::path& session, const core::CameraModel& camera,
+                        const Frame& frame) {
+  BoardDiagnosis diagnosis(all_default_tags(), camera);
+  diagnosis.look_at(frame);
+  const PoseCause cause = diagnosis.cause(PoseRejection::no_tags);
+  if (cause.suspect != PoseSuspect::board) return;
+  throw core::bad_input(
+      session,
+      "its first image shows another board than the sheet of sheen board, which " + cause.fault,
+      "give the file of that board: --board board.yaml");
 }
 
 }  // namespace sheen::capture

@@ -3,8 +3,11 @@
 
 #include "capture/board_print/board_plan.h"
 #include "capture/pose/tag_detector.h"
+#include "capture/source/frame.h"
+#include "core/geometry/camera.h"
 
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -32,5 +35,10 @@ Board all_default_tags();
 
 /// The sheet of which most of `tags` are, in any number of images; nothing when none is.
 std::optional<DefaultSheet> recognise_default_sheet(const std::vector<TagDetection>& tags);
+
+/// One of a session's first images, which shows none of the default sheets' tags: throws
+/// core::Error (bad_input) that names `session` when it shows another board's.
+void refuse_other_board(const std::filesystem::path& session, const core::CameraModel& camera,
+                        const Frame& frame);
 
 }  // namespace sheen::capture

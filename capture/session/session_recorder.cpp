@@ -33,6 +33,24 @@ void refuse_existing(const fs::path& folder) {
   throw core::bad_input(folder, "exists already", "choose another name for the recording");
 }
 
+/// What is known besides the images.
+SessionFile write_setup(const fs::path& folder, const SessionSetup& setup) {
+  SessionFile session{.camera = {}, .mesh = {}, .board_from_object = setup.board_from_object};
+  if (!setup.camera_is_guessed) {
+    session.camera = "camera.yaml";
+    write_camera(folder / session.camera, setup.camera);
+  }
+  if (!setup.board.empty()) {
+    session.board = "board.yaml";
+    copy_into_session(setup.board, folder / *session.board);
+  }
+  if (!setup.mesh.empty()) {
+    session.mesh = "object" + setup.mesh.extension().string();
+    copy_into_session(setup.mesh, folder / session.mesh);
+  }
+  return session;
+}
+
 }  // namespace
 
 SessionRecorder::SessionRecorder(const fs::path& folder, const SessionSetup& setup, double fps,
@@ -42,14 +60,8 @@ SessionRecorder::SessionRecorder(const fs::path& folder, const SessionSetup& set
   // The folder appears complete; the open files move with it.
   core::StagedOutput staged(folder);
   fs::create_directories(staged.path());
-  write_camera(staged.path() / "camera.yaml", setup.camera);
-  copy_into_session(setup.board, staged.path() / "board.yaml");
-  const std::string mesh = "object" + setup.mesh.extension().string();
-  copy_into_session(setup.mesh, staged.path() / mesh);
-  SessionFile session{.video = video_name_,
-                      .board = "board.yaml",
-                      .mesh = mesh,
-                      .board_from_object = setup.board_from_object};
+  SessionFile session = write_setup(staged.path(), setup);
+  session.video = video_name_;
   const ImageSize size{setup.camera.width_px(), setup.camera.height_px()};
   const fs::path path = staged.path() / video_name_;
   if (video) {

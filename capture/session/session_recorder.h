@@ -20,15 +20,18 @@
 
 namespace sheen::capture {
 
-/// What a session says besides its frames. Board and mesh are copied.
+/// What a session says besides its frames. Board and mesh are copied; what is not known yet is
+/// found from the recording later (open_unfinished_session).
 struct SessionSetup {
   core::CameraModel camera;
-  std::filesystem::path board;
-  std::filesystem::path mesh;
+  std::filesystem::path board;  ///< empty: not known yet
+  std::filesystem::path mesh;   ///< empty: not known yet
   Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();
+  bool camera_is_guessed = false;  ///< only the images' size is known of it; it is not written
 };
 
-/// Records a session that survives a crash. The folder opens as a session before the first image;
+/// Records a session that survives a crash. The folder opens as a session, unfinished where
+/// something is not known, before the first image;
 /// images and their time stamps are appended as they come and flushed to the disk twice a second.
 /// After a crash all but the last second is there. Whoever adds images never waits for the disk:
 /// one thread writes, another flushes.

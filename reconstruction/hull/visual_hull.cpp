@@ -149,10 +149,11 @@ Components find_standing(float foot_m, DistanceGrid& grid) {
   return find_components(grid);
 }
 
-void keep_component(const Components& components, int kept, DistanceGrid& grid) {
+void keep_components(const Components& components, const std::vector<int>& kept,
+                     DistanceGrid& grid) {
   for (std::size_t i = 0; i < grid.count(); ++i) {
     const int own = components.of_point[i];
-    if (own >= 0 && own != kept) grid[i] = grid.cell_m();
+    if (own >= 0 && std::ranges::find(kept, own) == kept.end()) grid[i] = grid.cell_m();
   }
 }
 

@@ -52,7 +52,8 @@ Components find_components(const DistanceGrid& grid);
 /// does not stand on the sheet is a phantom.
 Components find_standing(float foot_m, DistanceGrid& grid);
 
-/// Turns everything but one component to the outside.
-void keep_component(const Components& components, int kept, DistanceGrid& grid);
+/// Turns everything but some components to the outside.
+void keep_components(const Components& components, const std::vector<int>& kept,
+                     DistanceGrid& grid);
 
 }  // namespace sheen::reconstruction

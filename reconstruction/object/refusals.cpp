@@ -18,6 +18,9 @@ constexpr double kFromAbove = 0.94;     // sine of 70 degrees
 constexpr float kMostHidden = 0.8F;     // of the sheet within its tags
 constexpr double kSecondObject = 0.05;  // of the first one's volume
 constexpr float kLeastCovered = 0.65F;  // of the silhouettes, by the hull
+constexpr float kMostlyPaper = 0.5F;    // of what was cut out
+constexpr float kMovedShare = 0.25F;    // of its width
+constexpr const char* kLeaveIt = "film again and leave object and sheet where they are";
 constexpr double kDegrees = 180 / std::numbers::pi;
 
 /// How far, at worst over the horizontal directions, the views are from looking across one, in
@@ -87,8 +90,10 @@ float refuse_hidden_sheet(const std::filesystem::path& session, const capture::B
 
 void refuse_empty_sheet(const std::filesystem::path& session, const Components& components) {
   if (!components.parts.empty()) return;
-  throw core::bad_input(session, "no object is found on the sheet",
-                        "film an object that differs from the sheet and stands still on it");
+  throw core::bad_input(
+      session, "no object is found on the sheet",
+      "film an object that differs from the sheet and stands still on it; a pale one "
+      "on a sheet printed on coloured paper");
 }
 
 void refuse_what_stands_there(const std::filesystem::path& session, const capture::Board& board,
@@ -99,11 +104,36 @@ void refuse_what_stands_there(const std::filesystem::path& session, const captur
     throw core::bad_input(session, "more than one object stands on the sheet",
                           "film one object at a time");
   }
-  const Eigen::Vector3f middle = parts[0].box.center();
-  if (!tags_region(board).contains(middle.head<2>())) {
-    throw core::bad_input(session, "the object stands beside the sheet's tags",
-                          "put it in their middle and film again");
-  }
+  refuse_beside_tags(session, board, parts[0]);
+}
+
+void refuse_beside_tags(const std::filesystem::path& session, const capture::Board& board,
+                        const Component& object) {
+  const Eigen::Vector3f middle = object.box.center();
+  if (tags_region(board).contains(middle.head<2>())) return;
+  throw core::bad_input(session, "the object stands beside the sheet's tags",
+                        "put it in their middle and film again");
+}
+
+void refuse_paper_like(const std::filesystem::path& session, float paper_share) {
+  if (paper_share < kMostlyPaper) return;
+  throw core::bad_input(session,
+                        "the object looks like the sheet that it stands on (" +
+                            percent(static_cast<double>(paper_share)) +
+                            " of what could be cut out has the paper's colour), so where it ends "
+                            "cannot be told",
+                        "print the sheet on coloured or grey paper");
+}
+
+void refuse_two_places(const std::filesystem::path& session, const Component& first,
+                       const Component& second) {
+  const Eigen::Vector3f way = second.box.center() - first.box.center();
+  if (way.head<2>().norm() < kMovedShare * first.box.sizes().head<2>().maxCoeff()) return;
+  throw core::bad_input(session,
+                        "the object stands elsewhere in the second half of the walk (" +
+                            std::to_string(std::lround(1e3F * way.head<2>().norm())) +
+                            " mm away), as if it had been moved",
+                        kLeaveIt);
 }
 
 void refuse_moved_object(const std::filesystem::path& session, float covered_share) {
@@ -112,7 +142,7 @@ void refuse_moved_object(const std::filesystem::path& session, float covered_sha
                         "the object's outlines contradict each other (only " +
                             percent(static_cast<double>(covered_share)) +
                             " of them agree), as if it had been moved",
-                        "film again and leave object and sheet where they are");
+                        kLeaveIt);
 }
 
 }  // namespace sheen::reconstruction

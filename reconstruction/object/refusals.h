@@ -28,6 +28,17 @@ void refuse_empty_sheet(const std::filesystem::path& session, const Components& 
 void refuse_what_stands_there(const std::filesystem::path& session, const capture::Board& board,
                               const Components& components);
 
+/// One that stands beside the tags.
+void refuse_beside_tags(const std::filesystem::path& session, const capture::Board& board,
+                        const Component& object);
+
+/// Most of what was cut out looks like paper: only asked when no shape came of it.
+void refuse_paper_like(const std::filesystem::path& session, float paper_share);
+
+/// What both halves of a walk show does not overlap: the object moved.
+void refuse_two_places(const std::filesystem::path& session, const Component& first,
+                       const Component& second);
+
 /// Silhouettes that the hull, which all of them share, leaves bare: the object moved.
 void refuse_moved_object(const std::filesystem::path& session, float covered_share);
 

@@ -81,13 +81,6 @@ std::optional<cv::Vec3f> paper_colour_within(const StageMap& map, const cv::Mat&
   return paper;
 }
 
-bool is_paper(const cv::Vec3f& colour, float sigma, const cv::Vec3f& paper) {
-  const float ratio = luma_of(colour) / std::max(luma_of(paper), 1e-3F);
-  const cv::Vec3f chroma = shares_of(colour) - shares_of(paper);
-  return ratio > kDarkestPaper && ratio < kBrightestPaper && sigma < kPaperSigma &&
-         std::max({std::abs(chroma[0]), std::abs(chroma[1]), std::abs(chroma[2])}) < kPaperChroma;
-}
-
 }  // namespace
 
 Eigen::AlignedBox2f tags_region(const capture::Board& board) {
@@ -103,6 +96,13 @@ std::optional<cv::Vec3f> paper_colour(const capture::Board& board, const StageMa
                              region_mask(board, map.grid) & ~tag_squares(board, map.grid, 1.1));
 }
 
+bool looks_like_paper(const cv::Vec3f& colour, const cv::Vec3f& paper) {
+  const float ratio = luma_of(colour) / std::max(luma_of(paper), 1e-3F);
+  const cv::Vec3f chroma = shares_of(colour) - shares_of(paper);
+  return ratio > kDarkestPaper && ratio < kBrightestPaper &&
+         std::max({std::abs(chroma[0]), std::abs(chroma[1]), std::abs(chroma[2])}) < kPaperChroma;
+}
+
 void refuse_what_is_no_print(const capture::Board& board, StageMap& map) {
   const cv::Mat between =
       region_mask(board, map.grid) & ~tag_squares(board, map.grid, kTagWithMargin);
@@ -112,9 +112,11 @@ void refuse_what_is_no_print(const capture::Board& board, StageMap& map) {
   for (int y = 0; y < between.rows; ++y) {
     for (int x = 0; x < between.cols; ++x) {
       if (between.at<std::uint8_t>(y, x) == 0 || map.source.at<std::uint8_t>(y, x) == 0) continue;
-      if (!is_paper(map.colour.at<cv::Vec3f>(y, x), map.sigma.at<float>(y, x), *paper)) {
-        refused.at<std::uint8_t>(y, x) = 255;
+      if (map.sigma.at<float>(y, x) < kPaperSigma &&
+          looks_like_paper(map.colour.at<cv::Vec3f>(y, x), *paper)) {
+        continue;
       }
+      refused.at<std::uint8_t>(y, x) = 255;
     }
   }
   const int side = 2 * kGrownTexels + 1;

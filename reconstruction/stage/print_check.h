@@ -16,6 +16,9 @@ Eigen::AlignedBox2f tags_region(const capture::Board& board);
 /// Colour of the board's paper in the open, BGR, [0, 1]; nothing where too little is seen.
 std::optional<cv::Vec3f> paper_colour(const capture::Board& board, const StageMap& map);
 
+/// Whether a colour can be that paper in the open or in shade.
+bool looks_like_paper(const cv::Vec3f& colour, const cv::Vec3f& paper);
+
 /// Forgets texels that cannot be the board's print: between the tags there is paper, of even colour
 /// whatever its light. An object that hides a place from most views would else pass for it (study,
 /// step 1). The forgotten set grows by four texels.

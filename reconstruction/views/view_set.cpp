@@ -32,16 +32,6 @@ cv::Mat rays_of(const core::CameraModel& camera, int threads) {
   return rays;
 }
 
-/// The camera of images reduced by a whole factor: block means, whose centres move by half a pixel.
-core::CameraModel reduced_camera(const core::CameraModel& camera, int factor, cv::Size size) {
-  core::CameraModel::Intrinsics intrinsics = camera.intrinsics();
-  intrinsics.width_px = size.width;
-  intrinsics.height_px = size.height;
-  intrinsics.focal_px /= factor;
-  intrinsics.principal_px = ((intrinsics.principal_px.array() + 0.5) / factor - 0.5).matrix();
-  return core::CameraModel(intrinsics);
-}
-
 }  // namespace
 
 ViewSet make_view_set(const core::CameraModel& camera, const std::vector<PosedImage>& images,
@@ -56,9 +46,31 @@ ViewSet make_view_set(const core::CameraModel& camera, const std::vector<PosedIm
   return set;
 }
 
+int reduction(int width_px, int widest_px) {
+  return (width_px + widest_px - 1) / widest_px;
+}
+
+cv::Mat reduced(const cv::Mat& image, int factor) {
+  if (factor == 1) return image;
+  const cv::Size size(image.cols / factor, image.rows / factor);
+  cv::Mat means;
+  cv::resize(image(cv::Rect(0, 0, size.width * factor, size.height * factor)), means, size, 0, 0,
+             cv::INTER_AREA);
+  return means;
+}
+
+core::CameraModel reduced(const core::CameraModel& camera, int factor) {
+  core::CameraModel::Intrinsics intrinsics = camera.intrinsics();
+  intrinsics.width_px /= factor;
+  intrinsics.height_px /= factor;
+  intrinsics.focal_px /= factor;
+  // Centres of blocks lie half a pixel beside those of their first pixels.
+  intrinsics.principal_px = ((intrinsics.principal_px.array() + 0.5) / factor - 0.5).matrix();
+  return core::CameraModel(intrinsics);
+}
+
 ViewSet reduced(const ViewSet& views, std::size_t most, int widest_px, int threads) {
-  const int factor = (views.camera.width_px() + widest_px - 1) / widest_px;
-  const cv::Size size(views.camera.width_px() / factor, views.camera.height_px() / factor);
+  const int factor = reduction(views.camera.width_px(), widest_px);
   const std::size_t count = std::min(most, views.views.size());
   std::vector<PosedImage> images(count);
   core::parallel_for(
@@ -66,11 +78,7 @@ ViewSet reduced(const ViewSet& views, std::size_t most, int widest_px, int threa
       [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           const View& view = views.views[(2 * i + 1) * views.views.size() / (2 * count)];
-          images[i] = {view.frame_index, view.image, view.camera_from_board};
-          if (factor == 1) continue;
-          const cv::Rect whole_blocks(0, 0, size.width * factor, size.height * factor);
-          images[i].image = cv::Mat();
-          cv::resize(view.image(whole_blocks), images[i].image, size, 0, 0, cv::INTER_AREA);
+          images[i] = {view.frame_index, reduced(view.image, factor), view.camera_from_board};
         }
       },
       1);
@@ -84,7 +92,7 @@ ViewSet reduced(const ViewSet& views, std::size_t most, int widest_px, int threa
     }
     return some;
   }
-  return make_view_set(reduced_camera(views.camera, factor, size), images, threads);
+  return make_view_set(reduced(views.camera, factor), images, threads);
 }
 
 cv::Mat plane_points(const ViewSet& views, const View& view) {

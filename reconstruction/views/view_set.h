@@ -36,6 +36,14 @@ struct PosedImage {
 ViewSet make_view_set(const core::CameraModel& camera, const std::vector<PosedImage>& images,
                       int threads);
 
+/// The smallest whole factor that makes images of a width no wider than `widest_px`.
+int reduction(int width_px, int widest_px);
+/// Means of blocks of `factor` x `factor` pixels; what fills no block is left out. Factor 1: the
+/// image itself, shared.
+cv::Mat reduced(const cv::Mat& image, int factor);
+/// The camera of such images.
+core::CameraModel reduced(const core::CameraModel& camera, int factor);
+
 /// At most `most` of the views, spread evenly, their images reduced by the smallest whole factor
 /// that makes them no wider than `widest_px`.
 ViewSet reduced(const ViewSet& views, std::size_t most, int widest_px, int threads);

@@ -3,9 +3,9 @@
 #include "app/commands/capture.h"
 
 #include "app/interrupt.h"
-#include "capture/source/avi_reader.h"
+#include "capture/session/session.h"
 #include "core/diagnostics/error.h"
-#include "tests/app/program.h"
+#include "tests/app/playing_camera.h"
 
 #include <gtest/gtest.h>
 
@@ -16,42 +16,6 @@ namespace sheen::tests {
 namespace {
 
 constexpr int kFrames = 16;
-
-/// Delivers the images of the sample recording, as fast as they are asked for, starting at some
-/// time of a clock. Loses an image now and then, as cameras do.
-class PlayingCamera : public capture::Camera {
- public:
-  /// Fails after `images`; without a value it goes on to the recording's end.
-  explicit PlayingCamera(std::optional<int> images = std::nullopt)
-      : reader_(capture::AviReader::open(sample_session() / "frames.avi")), images_(images) {}
-
-  std::optional<capture::CameraBuffer> next(std::chrono::milliseconds /*timeout*/) override {
-    if (images_ == delivered_ || !reader_->advance()) {
-      throw core::Error(core::Error::Kind::run_failed, "/dev/played", "was unplugged",
-                        "plug it in again");
-    }
-    if (sequence_ % 10 == 9) ++sequence_, ++counts_.lost;
-    ++delivered_;
-    const auto& size = reader_->header().size;
-    return capture::CameraBuffer{
-        capture::PixelFormat::mjpeg, reader_->read(), size.width_px, size.height_px, 0,
-        1234.5 + sequence_ / 30.0,   sequence_++};
-  }
-
-  [[nodiscard]] capture::CameraDescription description() const override {
-    const auto& size = reader_->header().size;
-    return {"Player",      "/dev/played",  capture::PixelFormat::mjpeg,
-            size.width_px, size.height_px, 30};
-  }
-  [[nodiscard]] capture::CameraCounts counts() const override { return counts_; }
-
- private:
-  std::optional<capture::AviReader> reader_;
-  std::optional<int> images_;
-  int delivered_ = 0;
-  std::uint32_t sequence_ = 7;
-  capture::CameraCounts counts_;
-};
 
 class LiveCapture : public testing::Test {
  protected:
@@ -109,6 +73,43 @@ TEST_F(LiveCapture, KeepsRecordingAndModelWhenTheCameraIsGone) {
   EXPECT_EQ(report()["recording"]["recorded"], delivered);
   EXPECT_FALSE(report()["recording"]["complete"]);
   EXPECT_TRUE(model() == replay());
+}
+
+/// A camera that nobody has calibrated: its lens is found when the recording has ended, as a replay
+/// finds it in the recording alone.
+TEST_F(LiveCapture, WithoutACameraFileGivesTheModelThatAReplayGives) {
+  const capture::Session like = capture::open_session(sample_session());
+  options_.like.clear();
+  options_.board = *like.board;
+  options_.mesh = like.mesh;
+  for (Eigen::Index i = 0; i < 16; ++i) {
+    options_.board_from_object.push_back(like.board_from_object.matrix()(i / 4, i % 4));
+  }
+  app::capture_session(std::make_unique<PlayingCamera>(), options_, context_);
+  EXPECT_EQ(report()["recording"]["recorded"], kFrames);
+  EXPECT_TRUE(report()["walk"].contains("camera"));
+
+  const auto session_file = options_.session / "session.json";
+  auto as_recorded = nlohmann::json::parse(read_file(session_file));
+  as_recorded.erase("camera");
+  write_file(session_file, as_recorded.dump());
+  std::filesystem::remove(options_.session / "camera.yaml");
+  const auto model = folder_.path() / "replay.glb";
+  const ProgramRun run = run_sheen({"replay", options_.session, "-o", model, "--quiet"});
+  ASSERT_EQ(run.exit_code, 0) << run.standard_error;
+  EXPECT_TRUE(this->model() == read_file(model));
+}
+
+TEST_F(LiveCapture, RefusesAnotherBoardThanTheDefaultSheet) {
+  options_.like.clear();
+  try {
+    app::capture_session(std::make_unique<PlayingCamera>(), options_, context_);
+    FAIL() << "the sample's tags are none of the default sheet's";
+  } catch (const core::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("its first image shows another board"),
+              std::string::npos)
+        << error.what();
+  }
 }
 
 /// Says of itself that its raw images are of odd width.
@@ -177,6 +178,9 @@ TEST_F(LiveCapture, RefusesWhatDoesNotFitTogether) {
   };
   options_.board_from_object = std::vector<double>(16, 0.5);
   expect_refused("--T-stage-object");
+  options_.like.clear();
+  expect_refused("--T-stage-object: places a mesh, and there is none");
+  options_.like = sample_session();
   options_.board_from_object.clear();
   options_.mesh = sample_session() / "camera.yaml";
   expect_refused("camera.yaml");
@@ -188,13 +192,19 @@ TEST_F(LiveCapture, RefusesWhatDoesNotFitTogether) {
   expect_refused("board.yaml");
   options_.fit.output.clear();
   EXPECT_FALSE(std::filesystem::exists(options_.session));  // nothing stands in the next one's way
-  options_.like.clear();
-  expect_refused("--camera");
-  options_.like = sample_session();
   std::filesystem::create_directories(options_.session);
   write_file(options_.session / "notes.txt", "mine");
   expect_refused("exists already");
   EXPECT_EQ(read_file(options_.session / "notes.txt"), "mine");
+}
+
+TEST(CommandContext, SaysNothingTwice) {
+  app::CommandContext context;
+  context.quiet = true;
+  context.note("note: colours are taken for sRGB");
+  context.note("note: 2 damaged frames were left out");
+  context.note("note: colours are taken for sRGB");
+  EXPECT_EQ(context.notes->lines.size(), 2U);
 }
 
 TEST(CaptureCommand, SaysWhichDeviceIsMissing) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "app/preview/preview_window.h"
+#include "app/preview/walk_window.h"
+#include "capture/session/session.h"
 #include "core/diagnostics/error.h"
 #include "tests/app/display.h"
 #include "tests/app/program.h"
@@ -7,6 +9,7 @@
 
 #include <gtest/gtest.h>
 #include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 
 #include <cstdlib>
 
@@ -122,6 +125,34 @@ TEST_F(ViewerWindow, ClosesOnRequest) {
   bool open = true;
   for (int i = 0; open && i < kPatience; ++i) open = window_->redraw(0.02);
   EXPECT_FALSE(open);
+}
+
+TEST(WalkWindow, ShowsWhatTheCameraSeesAndCloses) {
+  const auto display = tests::VirtualDisplay::open(1400, 900);
+  if (!display) GTEST_SKIP() << "Xvfb or xdotool is not installed: no window to test";
+  const capture::Session session = capture::open_session(tests::sample_session());
+  reconstruction::LiveWalk walk(
+      {.session = "walk", .board = capture::read_board(*session.board), .camera = session.camera});
+  const reconstruction::LiveHull hull(walk, "walk");
+  const tests::TemporaryFolder folder;
+  WalkWindow window(
+      {.title = "test", .walk = walk, .hull = hull, .snapshot_folder = folder.path()});
+  for (int i = 0; i < 3; ++i) window.redraw(0);
+  display->act({"mousemove", "500", "300"});
+  walk.look_at(*capture::open_frames(session)->next());
+  window.redraw(0.05);
+  display->act({"key", "--clearmodifiers", "F12"});
+  const auto file = folder.path() / "sheen-001.png";
+  for (int i = 0; i < kPatience && !std::filesystem::exists(file); ++i) window.redraw(0.02);
+  // Before there is a hull the image fills the view: its sheet is brighter than any background.
+  const cv::Mat shown = cv::imread(file.string());
+  ASSERT_FALSE(shown.empty());
+  const cv::Mat view = shown.colRange(0, shown.cols / 2);
+  EXPECT_GT(cv::mean(view)[1], 60);
+  display->act({"key", "--clearmodifiers", "q"});
+  bool is_open = true;
+  for (int i = 0; is_open && i < kPatience; ++i) is_open = window.redraw(0.02);
+  EXPECT_FALSE(is_open);
 }
 
 TEST(NoDisplay, IsOneClearError) {

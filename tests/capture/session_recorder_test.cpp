@@ -3,6 +3,7 @@
 
 #include "capture/session/camera_recording.h"
 #include "capture/session/frame_stamps.h"
+#include "capture/session/new_session.h"
 #include "capture/session/session.h"
 #include "capture/source/avi_reader.h"
 #include "tests/capture/expect_bad_input.h"
@@ -87,6 +88,29 @@ TEST(SessionRecorder, RefusesToWriteOverSomething) {
   expect_bad_input([&] { SessionRecorder(scratch.path() / "other", without_mesh, kFps); },
                    "absent.ply");
   EXPECT_FALSE(std::filesystem::exists(scratch.path() / "other"));
+}
+
+TEST(SessionRecorder, RecordsAWalkOfWhichNothingIsKnown) {
+  const TemporaryFolder scratch;
+  const auto folder = scratch.path() / "walk";
+  {
+    SessionRecorder recorder(
+        folder,
+        {.camera = make_camera(kRecordedSize.width_px, kRecordedSize.height_px, false),
+         .board = {},
+         .mesh = {},
+         .camera_is_guessed = true},
+        kFps);
+    ASSERT_TRUE(recorder.add(live_image(0)));
+    ASSERT_TRUE(recorder.wait_for(0));
+    // It opens, unfinished as it is, while it is being recorded.
+    const Session session = open_unfinished_session(folder);
+    EXPECT_FALSE(session.camera_file);
+    EXPECT_FALSE(session.board);
+    EXPECT_TRUE(session.mesh.empty());
+    EXPECT_EQ(session.camera.width_px(), kRecordedSize.width_px);
+  }
+  EXPECT_EQ(count_frames(open_unfinished_session(folder)), 1);
 }
 
 /// Records until it is killed, never more than a second ahead of the file; reports every image that

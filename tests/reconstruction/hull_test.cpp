@@ -110,7 +110,7 @@ TEST(VisualHull, PartsAreNumberedBySize) {
   ASSERT_EQ(parts.parts.size(), 2U);
   EXPECT_EQ(parts.parts[0].points, 2U);
   EXPECT_EQ(parts.of_point[grid.index(1, 4, 4)], 1);
-  keep_component(parts, 0, grid);
+  keep_components(parts, {0}, grid);
   EXPECT_GT(grid[grid.index(1, 4, 4)], 0);
   EXPECT_LT(grid[grid.index(5, 4, 4)], 0);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // From images to a surface: a ball on a sheet, drawn ray by ray.
+#include "core/diagnostics/error.h"
 #include "reconstruction/object/object_mesh.h"
 #include "reconstruction/surface/self_intersection.h"
 #include "tests/reconstruction/stage_for_tests.h"
@@ -77,17 +78,25 @@ cv::Mat draw(const core::CameraModel& camera, const capture::Board& board, const
   return image;
 }
 
-ObjectMesh measure(int threads, const Object& object = meet_ball, const Shade& shade = no_shade) {
+/// The object as view `index` finds it.
+using Scene = std::function<Object(int index)>;
+
+ObjectMesh measure_scene(int threads, const Scene& scene, const Shade& shade = no_shade) {
   const core::CameraModel camera = tests::small_camera(160, 120);
   const capture::Board board = tests::ring_board();
   std::vector<PosedImage> images;
   for (const double elevation : {20.0, 55.0}) {
     for (const auto& pose : tests::ring_of_poses(12, 0.4, elevation, {0, 0, 0.02})) {
-      images.push_back(
-          {static_cast<int>(images.size()), draw(camera, board, object, shade, pose), pose});
+      const int index = static_cast<int>(images.size());
+      images.push_back({index, draw(camera, board, scene(index), shade, pose), pose});
     }
   }
   return measure_object("walk", camera, board, images, threads, [](std::string_view, int, int) {});
+}
+
+ObjectMesh measure(int threads, const Object& object = meet_ball, const Shade& shade = no_shade) {
+  return measure_scene(
+      threads, [&](int) { return object; }, shade);
 }
 
 TEST(MeasuredObject, IsTheBallToAFractionOfAPixel) {
@@ -216,6 +225,51 @@ TEST(MeasuredObject, HasFlatFacesAndSharpEdgesWhereItIsABox) {
   EXPECT_GT(mean, 0.02 - 0.0012);
   EXPECT_LT(mean, 0.0216 + 0.0012);
   EXPECT_LT(ripple, 0.0006);  // a quarter of a pixel
+}
+
+/// The ball in the colour of the paper (225), a little darker below.
+std::optional<Hit> meet_white_ball(const Eigen::Vector3d& eye, const Eigen::Vector3d& direction) {
+  auto hit = meet_ball(eye, direction);
+  if (!hit) return hit;
+  const Eigen::Vector3d normal = (eye + hit->way * direction - kBallCentre) / kBallRadius_m;
+  hit->colour = cv::Vec3d::all(225 * (0.95 + 0.05 * normal.z()));
+  return hit;
+}
+
+/// The ball as if it stood elsewhere.
+Object ball_moved_by(const Eigen::Vector3d& way) {
+  return [way](const Eigen::Vector3d& eye, const Eigen::Vector3d& direction) {
+    return meet_ball(eye - way, direction);
+  };
+}
+
+void expect_refused(const Scene& scene, const std::string& cause) {
+  try {
+    measure_scene(1, scene);
+    FAIL() << "not refused: " << cause;
+  } catch (const core::Error& error) {
+    EXPECT_NE(std::string(error.what()).find("walk: " + cause), std::string::npos) << error.what();
+  }
+}
+
+TEST(MeasuredObject, IsRefusedForWhatIsWrong) {
+  expect_refused([](int) { return meet_white_ball; }, "the object looks like the sheet");
+  expect_refused([](int) { return ball_moved_by({0.13, 0, 0}); }, "the object stands beside");
+  // Half-way through somebody moves it by its own width.
+  expect_refused(
+      [](int index) {
+        return ball_moved_by({0, index < 12 ? -0.03 : 0.03, 0});
+      },
+      "the object stands elsewhere in the second half");
+  expect_refused(
+      [](int) {
+        return [](const Eigen::Vector3d& eye, const Eigen::Vector3d& direction) {
+          const auto one = ball_moved_by({0, -0.04, 0})(eye, direction);
+          const auto other = ball_moved_by({0, 0.04, 0})(eye, direction);
+          return one && (!other || one->way < other->way) ? one : other;
+        };
+      },
+      "more than one object stands on the sheet");
 }
 
 }  // namespace

@@ -80,6 +80,24 @@ TEST(Refusals, ASheetThatIsHidden) {
   EXPECT_EQ(refuse_hidden_sheet("walk", board, map), 0);
 }
 
+TEST(Refusals, AnObjectThatLooksLikeItsSheet) {
+  expect_refused([] { refuse_paper_like("walk", 0.81F); },
+                 "looks like the sheet that it stands on (81 % of what could be cut out",
+                 "print the sheet on coloured or grey paper");
+  EXPECT_NO_THROW(refuse_paper_like("walk", 0.2F));
+}
+
+TEST(Refusals, AnObjectInTwoPlaces) {
+  const auto first = parts({{1000, {0, 0, 0.02F}}}).parts[0];
+  const auto second = parts({{1000, {0.04F, 0.03F, 0.02F}}}).parts[0];
+  expect_refused([&] { refuse_two_places("walk", first, second); },
+                 "elsewhere in the second half of the walk (50 mm away)",
+                 "leave object and sheet where they are");
+  // 4 mm of 20: an outline that differs from half to half.
+  const auto nearly = parts({{1000, {0.004F, 0, 0.02F}}}).parts[0];
+  EXPECT_NO_THROW(refuse_two_places("walk", first, nearly));
+}
+
 TEST(Refusals, AnObjectThatMoved) {
   expect_refused([] { refuse_moved_object("walk", 0.5F); }, "contradict each other (only 50 %",
                  "leave object and sheet where they are");
