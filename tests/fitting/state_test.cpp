@@ -65,7 +65,8 @@ class FitState : public ::testing::Test {
 
   static std::string model_of(const fs::path& path) {
     const States states = open({path});
-    return testing::bytes_of(fit_joined(states, join(states), {}, 1, nothing).fitter->light_field());
+    return testing::bytes_of(
+        fit_joined(states, join(states), {}, 1, nothing).fitter->light_field());
   }
 
   std::string representation_ = "mean";
