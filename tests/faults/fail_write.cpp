@@ -173,6 +173,15 @@ ssize_t pwrite64(int file, const void* bytes, size_t count, off64_t at) {
   return original(file, bytes, fate == Fate::shortened ? (count + 1) / 2 : count, at);
 }
 
+ssize_t pwrite(int file, const void* bytes, size_t count, off_t at) {
+  return pwrite64(file, bytes, count, at);
+}
+
+ssize_t sendfile(int to, int from, off_t* at, size_t count) {
+  static auto* const original = real<ssize_t(int, int, off_t*, size_t)>("sendfile");
+  return fate_of_write(to) == Fate::refused ? -1 : original(to, from, at, count);
+}
+
 size_t fwrite(const void* bytes, size_t size, size_t count, FILE* file) {
   static auto* const original = real<size_t(const void*, size_t, size_t, FILE*)>("fwrite");
   const Fate fate = fate_of_write(fileno(file));

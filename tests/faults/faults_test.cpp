@@ -69,7 +69,7 @@ const std::vector<WritingCommand>& commands() {
        {"forget", "STATE", "--frames", "0-1", "-o", "OUT/model.glb", "--state", "OUT/fit.state"},
        {"model.glb", "fit.state"}},
       {"synth",
-       {"synth", "matte", "-o", "OUT/session", "--size", "160x120", "--frames", "3", "--held-out",
+       {"synth", "matte", "-o", "OUT/session", "--size", "160x120", "--frames", "2", "--held-out",
         "1", "--samples", "1", "--mesh-vertices", "500"},
        {"session"},
        false},
