@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMostEvents = 2000;
-constexpr std::size_t kSlowCommands = 4;  // the last ones
+constexpr std::size_t kSlowCommands = 3;  // the last ones
 
 /// Files of a folder (or one file) by name, "" for what is no file.
 using Tree = std::map<std::string, std::string>;
@@ -93,9 +93,6 @@ const std::vector<WritingCommand>& commands() {
        {"calibrate", "SAMPLE", "--board", "SAMPLE/board.yaml", "-o", "OUT/camera.yaml", "--picture",
         "OUT/coverage.png"},
        {"camera.yaml", "coverage.png"}},
-      {"compare",
-       {"compare", "SESSION", "-o", "OUT", "--only", "mean", "--hold-out", "3", "--end", "4"},
-       {"bytes.svg", "bytes.png"}},  // the others hold times
   };
   return all;
 }
