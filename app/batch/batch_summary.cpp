@@ -45,6 +45,48 @@ ordered_json json_or_null(const std::optional<double>& value) {
   return value ? ordered_json(*value) : ordered_json(nullptr);
 }
 
+/// Adds the number at a JSON pointer of `from` to that of `to`.
+void add_number(const ordered_json& from, ordered_json& to, const std::string& pointer) {
+  const auto a = number(from, pointer.c_str());
+  const auto b = number(to, pointer.c_str());
+  if (a && b) to[ordered_json::json_pointer(pointer)] = static_cast<std::int64_t>(*a + *b);
+}
+
+/// What the reports of all parts say together: each has seen its share of the patches, and all have
+/// seen all frames. Null where one is missing.
+ordered_json sum_of_parts(std::span<const SessionWork> parts) {
+  ordered_json sum;
+  for (const SessionWork& part : parts) {
+    ordered_json report = read_json(part.folder_of(Step::replay) / "report.json");
+    if (!report.is_object()) return nullptr;
+    if (sum.is_object()) {
+      add_number(sum, report, "/patches_observed");
+      add_number(sum, report, "/coverage/underneath/observed");
+      for (int i = 0; number(report, fmt::format("/coverage/sectors/{}/observed", i).c_str());
+           ++i) {
+        add_number(sum, report, fmt::format("/coverage/sectors/{}/observed", i));
+      }
+      report["peak_rss_bytes"] = std::max(number(sum, "/peak_rss_bytes").value_or(0),
+                                          number(report, "/peak_rss_bytes").value_or(0));
+    }
+    sum = std::move(report);
+  }
+  return sum;
+}
+
+/// Of the replay; of one in parts once they are merged. No part measures held-out views, since none
+/// has a whole picture; `evaluate` does.
+ordered_json replay_report(const SessionWork& work) {
+  const auto parts = work.parts();
+  if (parts.empty()) return read_json(work.folder_of(Step::replay) / "report.json");
+  std::error_code failure;
+  const auto model_bytes =
+      std::filesystem::file_size(work.folder_of(Step::replay) / "model.glb", failure);
+  ordered_json report = failure ? ordered_json(nullptr) : sum_of_parts(parts);
+  if (report.is_object()) report["model_bytes"] = model_bytes;
+  return report;
+}
+
 /// What went wrong with the frames, most frequent first: "no_tags 12, blur 3".
 std::string refusals_text(const ordered_json& rejections) {
   std::vector<std::pair<int, std::string>> reasons;
@@ -112,15 +154,34 @@ ordered_json files_of(const SessionWork& work) {
       files[name] = work.job().name + "/" + name;
     }
   }
+  for (const SessionWork& part : work.parts()) {
+    std::error_code failure;
+    if (!files.contains("failed.log") &&
+        std::filesystem::exists(part.folder() / "failed.log", failure)) {
+      files["failed.log"] =
+          fmt::format("{}/{}/failed.log", work.job().name, part.folder().filename().string());
+    }
+  }
   return files;
 }
 
+/// Of each step; a replay's parts count with it.
 ordered_json seconds_of(const SessionWork& work) {
+  const auto seconds_in = [](const std::filesystem::path& folder) {
+    return number(read_json(folder / "step.json"), "/seconds");
+  };
   ordered_json seconds = ordered_json::object();
   for (const Step step : work.steps()) {
-    if (const auto taken = number(read_json(work.folder_of(step) / "step.json"), "/seconds")) {
+    if (const auto taken = seconds_in(work.folder_of(step))) {
       seconds[std::string(name_of(step))] = *taken;
     }
+  }
+  if (seconds.contains("replay")) {
+    double sum = seconds["replay"].get<double>();
+    for (const SessionWork& part : work.parts()) {
+      sum += seconds_in(part.folder_of(Step::replay)).value_or(0);
+    }
+    seconds["replay"] = sum;
   }
   return seconds;
 }
@@ -144,7 +205,7 @@ std::optional<double> seen_share(const ordered_json& replay, const ordered_json&
 
 ordered_json summarise_session(const SessionWork& work, const Failure* failure,
                                const Wanted& wanted) {
-  const ordered_json replay = read_json(work.folder_of(Step::replay) / "report.json");
+  const ordered_json replay = replay_report(work);
   const ordered_json evaluation = read_json(work.folder_of(Step::evaluate) / "report.json");
   const ordered_json registration = read_json(work.folder_of(Step::register_mesh) / "report.json");
 
@@ -177,6 +238,7 @@ ordered_json summarise_session(const SessionWork& work, const Failure* failure,
           {"psnr", json_or_null(number(evaluation, "/mean/psnr"))},
           {"ssim", json_or_null(number(evaluation, "/mean/ssim"))},
           {"patches", json_or_null(number(replay, "/patches"))},
+          {"parts", work.job().parts},
           {"model_bytes", json_or_null(number(replay, "/model_bytes"))},
           {"peak_rss_bytes", json_or_null(number(replay, "/peak_rss_bytes"))},
           {"rejections",

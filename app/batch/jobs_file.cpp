@@ -17,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostBytes = std::size_t{16} << 20;  // a hundred thousand sessions
+constexpr int kMostParts = 100;
 constexpr const char* kRemedy = "see docs/batch.md for what it may say";
 constexpr const char* kEverySession = "*";
 
@@ -27,7 +28,8 @@ class JobsReader {
   Jobs read() const {
     const YAML::Node root = YAML::Load(capture::read_text_file(path_, kMostBytes));
     if (!root.IsMap()) fail("is no list of keys and values");
-    check_keys(root, "the file", {"sessions", "steps", "hold_out", "wanted", "options", "format"});
+    check_keys(root, "the file",
+               {"sessions", "steps", "hold_out", "wanted", "options", "format", "parts"});
     Jobs jobs;
     if (root["hold_out"]) jobs.hold_out = hold_out(root["hold_out"]);
     if (root["format"]) jobs.format = text(root["format"], "format");
@@ -131,9 +133,18 @@ class JobsReader {
     return result;
   }
 
-  /// `steps` and `options`, of the file or of one session.
+  int parts(const YAML::Node& node) const {
+    const auto value = core::parse_whole_number(text(node, "parts"));
+    if (!value || *value < 1 || *value > kMostParts) {
+      fail("parts is no whole number from 1 to " + std::to_string(kMostParts));
+    }
+    return static_cast<int>(*value);
+  }
+
+  /// `steps`, `parts` and `options`, of the file or of one session.
   void take_settings(const YAML::Node& node, int hold_out, Job& job) const {
     if (node["steps"]) job.steps = steps(node["steps"], hold_out);
+    if (node["parts"]) job.parts = parts(node["parts"]);
     const YAML::Node options = node["options"];
     if (!options) return;
     if (!options.IsMap()) fail("options is no list of keys and values");
@@ -148,7 +159,7 @@ class JobsReader {
   void add_session(const YAML::Node& entry, int hold_out, const Job& common, Jobs& jobs) const {
     Job job = common;
     if (entry.IsMap()) {
-      check_keys(entry, "a session", {"folder", "name", "steps", "options"});
+      check_keys(entry, "a session", {"folder", "name", "steps", "options", "parts"});
       if (!entry["folder"]) fail("a session has no folder");
       take_settings(entry, hold_out, job);
       if (entry["name"]) job.name = text(entry["name"], "name");

@@ -19,6 +19,7 @@ struct Job {
   std::filesystem::path folder;  ///< of the session
   std::vector<Step> steps;       ///< in their order
   StepWords words;
+  int parts = 1;  ///< of the patches, each replayed on its own; merged where there are several
 };
 
 /// What a session must reach, else it is listed as one that wants another walk.

@@ -33,21 +33,37 @@ void remove_unfinished(const fs::path& folder) {
   for (const fs::path& path : unfinished) fs::remove_all(path);
 }
 
-std::deque<Step> steps_left(const SessionWork& work, Step until) {
-  std::deque<Step> left;
+/// What a process is started for: a step of a session or of one of its parts.
+struct Run {
+  const SessionWork* work;
+  Step step;
+};
+
+std::deque<Run> runs_left(const SessionWork& work, std::span<const SessionWork> parts, Step until) {
+  std::deque<Run> left;
   for (const Step step : work.out_of_date()) {
-    if (step <= until) left.push_back(step);
+    if (step > until) break;
+    for (const SessionWork& part : parts) {
+      if (step == Step::replay && !part.out_of_date().empty()) left.push_back({&part, step});
+    }
+    left.push_back({&work, step});
   }
   return left;
 }
 
-/// A session whose steps are run one after the other; no other process works on it meanwhile.
+std::size_t count_runs(const SessionWork& work, Step until) {
+  const auto parts = work.parts();
+  return runs_left(work, parts, until).size();
+}
+
+/// A session whose steps are run one after the other, and so are the parts of its replay: here they
+/// save memory. No other process works on it meanwhile.
 class RunningSession {
  public:
   RunningSession(const SessionWork& work, Step until, int threads)
-      : work_(work), lock_(work.folder()), threads_(threads) {
+      : work_(work), parts_(work.parts()), lock_(work.folder()), threads_(threads) {
     remove_unfinished(work.folder());
-    left_ = steps_left(work, until);
+    left_ = runs_left(work_, parts_, until);
     start_next();
   }
 
@@ -58,11 +74,17 @@ class RunningSession {
 
   void start_next() {
     now_.reset();
+    part_lock_.reset();
     if (left_.empty()) return;
+    const auto [work, step] = left_.front();
     try {
-      now_.emplace(work_, left_.front(), threads_);
+      if (work != &work_) {
+        part_lock_.emplace(work->folder());
+        remove_unfinished(work->folder());
+      }
+      now_.emplace(*work, step, threads_);
     } catch (const core::Error& error) {
-      write_failure(work_.folder(), {std::string(name_of(left_.front())), error.what()}, {});
+      write_failure(work_.folder(), {std::string(name_of(step)), error.what()}, {});
       throw;
     }
   }
@@ -73,9 +95,11 @@ class RunningSession {
 
  private:
   const SessionWork& work_;
+  std::vector<SessionWork> parts_;
   core::FolderLock lock_;
+  std::optional<core::FolderLock> part_lock_;  ///< of the part at hand: on a cluster they have one
   int threads_;
-  std::deque<Step> left_;  ///< the one at hand included
+  std::deque<Run> left_;  ///< the one at hand included
   std::optional<StepRun> now_;
 };
 
@@ -105,14 +129,14 @@ class Engine {
   static std::deque<const SessionWork*> to_do(std::span<const SessionWork> sessions, Step until) {
     std::deque<const SessionWork*> result;
     for (const SessionWork& work : sessions) {
-      if (!steps_left(work, until).empty()) result.push_back(&work);
+      if (count_runs(work, until) > 0) result.push_back(&work);
     }
     return result;
   }
 
   static int count_steps(const std::deque<const SessionWork*>& sessions, Step until) {
     std::size_t steps = 0;
-    for (const SessionWork* work : sessions) steps += steps_left(*work, until).size();
+    for (const SessionWork* work : sessions) steps += count_runs(*work, until);
     return static_cast<int>(steps);
   }
 
@@ -122,7 +146,7 @@ class Engine {
            running_.size() < static_cast<std::size_t>(options_.sessions_at_once)) {
       const SessionWork& work = *waiting_.front();
       waiting_.pop_front();
-      attempt(work, steps_left(work, options_.until).size(), [&] {
+      attempt(work, count_runs(work, options_.until), [&] {
         running_.emplace_back(work, options_.until, threads_);
         return true;
       });

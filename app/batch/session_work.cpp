@@ -23,6 +23,8 @@ using nlohmann::ordered_json;
 constexpr const char* kStepRecord = "step.json";
 constexpr const char* kSession = "session";
 constexpr const char* kModel = "model.glb";
+constexpr const char* kState = "part.state";
+constexpr const char* kPoses = "poses.txt";
 constexpr std::size_t kMostRecordBytes = std::size_t{1} << 20;
 
 /// FNV-1a, 64 bits: tells changed input from unchanged, nobody forges it.
@@ -85,8 +87,21 @@ SessionWork::SessionWork(const Jobs& jobs, const Job& job, std::filesystem::path
   if (surveys && !is_posed_by_tags(job_.folder)) std::erase(steps_, Step::survey);
 }
 
+fs::path SessionWork::folder() const {
+  return part_ ? folder_ / fmt::format("part-{}", *part_) : folder_;
+}
+
 fs::path SessionWork::folder_of(Step step) const {
-  return folder_ / name_of(step);
+  return (step == Step::replay ? folder() : folder_) / name_of(step);
+}
+
+std::vector<SessionWork> SessionWork::parts() const {
+  std::vector<SessionWork> works;
+  for (int number = 1; is_merged() && number <= job_.parts; ++number) {
+    works.push_back(*this);
+    works.back().part_ = number;
+  }
+  return works;
 }
 
 fs::path SessionWork::session_before(Step step) const {
@@ -107,6 +122,9 @@ std::string SessionWork::fingerprint(Step step, const std::string& recording) co
   }
   text += fmt::format("{} {} {}\n", SHEEN_VERSION, name_of(step), hold_out_);
   if (step == Step::export_model) text += format_ + "\n";
+  if (step == Step::replay && job_.parts > 1) {
+    text += part_ ? fmt::format("part {} of {}\n", *part_, job_.parts) : "merged\n";
+  }
   if (const auto words = job_.words.find(step); words != job_.words.end()) {
     for (const std::string& word : words->second) text += word + "\n";
   }
@@ -115,11 +133,34 @@ std::string SessionWork::fingerprint(Step step, const std::string& recording) co
 
 std::vector<Step> SessionWork::out_of_date() const {
   const std::string recording = state_of(job_.folder);
+  const auto is_missing = [&recording](const SessionWork& work, Step step) {
+    return fingerprint_in(work.folder_of(step)) != work.fingerprint(step, recording);
+  };
+  if (part_) {
+    SessionWork whole = *this;
+    whole.part_.reset();
+    const bool is_needed = is_missing(whole, Step::replay) && is_missing(*this, Step::replay);
+    return is_needed ? std::vector{Step::replay} : std::vector<Step>{};
+  }
   std::vector<Step> missing;
   for (const Step step : steps_) {
-    if (fingerprint_in(folder_of(step)) != fingerprint(step, recording)) missing.push_back(step);
+    if (is_missing(*this, step)) missing.push_back(step);
   }
   return missing;
+}
+
+std::vector<std::string> SessionWork::merge(const fs::path& output) const {
+  std::vector<std::string> words{"merge", "-o", output / kModel};
+  for (const SessionWork& part : parts()) {
+    if (!part.out_of_date().empty()) {
+      throw core::Error(core::Error::Kind::run_failed, part.folder(), "is missing",
+                        "run the batch again without --part");
+    }
+    words.push_back(part.folder_of(Step::replay) / kState);
+  }
+  // Every part poses all frames, and alike.
+  fs::copy_file(parts().front().folder_of(Step::replay) / kPoses, output / kPoses);
+  return words;
 }
 
 std::vector<std::string> SessionWork::prepare(Step step, const fs::path& output,
@@ -146,8 +187,14 @@ std::vector<std::string> SessionWork::prepare(Step step, const fs::path& output,
       add({session, "-o", links / "session.json", "--picture", output / "outline.png"});
       break;
     case Step::replay:
-      add({session, "-o", output / kModel, "--hold-out", held_out, "--poses-out",
-           output / "poses.txt"});
+      if (is_merged()) {
+        words = merge(output);
+        break;
+      }
+      add({session, "-o", output / kModel, "--hold-out", held_out, "--poses-out", output / kPoses});
+      if (part_) {
+        add({"--part", fmt::format("{}/{}", *part_, job_.parts), "--state", output / kState});
+      }
       break;
     case Step::evaluate:
       add({model, session, "--hold-out", held_out, "--contact-sheet", output / "sheet.png"});
@@ -157,7 +204,9 @@ std::vector<std::string> SessionWork::prepare(Step step, const fs::path& output,
       break;
   }
   add({"--report", output / "report.json", "--threads", std::to_string(threads)});
-  if (const auto more = job_.words.find(step); more != job_.words.end()) {
+  const auto more = job_.words.find(step);
+  const bool is_merge = step == Step::replay && is_merged();  // its parts got the replay's words
+  if (more != job_.words.end() && !is_merge) {
     words.insert(words.end(), more->second.begin(), more->second.end());
   }
   return words;

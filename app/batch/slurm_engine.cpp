@@ -81,6 +81,22 @@ std::vector<Step> steps_of(std::span<const SessionWork> sessions, Step until) {
   return steps;
 }
 
+/// The most that any of the sessions is replayed in.
+int parts_of(std::span<const SessionWork> sessions) {
+  int parts = 1;
+  for (const SessionWork& work : sessions) parts = std::max(parts, work.job().parts);
+  return parts;
+}
+
+/// Why a session, or one of its parts, went no further.
+std::optional<Failure> failure_of(const SessionWork& work) {
+  if (auto failure = read_failure(work.folder())) return failure;
+  for (const SessionWork& part : work.parts()) {
+    if (auto failure = read_failure(part.folder())) return failure;
+  }
+  return std::nullopt;
+}
+
 class Queue {
  public:
   explicit Queue(const SlurmEngine& engine)
@@ -107,24 +123,19 @@ class Queue {
     return known;
   }
 
-  /// Submits an array for every step, each task after that of the step before.
-  std::vector<std::string> submit(const std::vector<Step>& steps, const std::vector<int>& numbers) {
+  /// Submits an array for every step, each task after that of the step before; the parts of a
+  /// replay after that, too, and the replay after all of them.
+  std::vector<std::string> submit(const std::vector<Step>& steps, int parts,
+                                  const std::vector<int>& numbers) {
     std::vector<std::string> jobs;
+    std::vector<std::string> before;
     for (const Step step : steps) {
-      const fs::path script = folder_ / (std::string(name_of(step)) + ".sh");
-      core::write_file(script, script_of(step));
-      std::vector<std::string> words{"--parsable",
-                                     "--requeue",
-                                     "--kill-on-invalid-dep=yes",
-                                     fmt::format("--job-name=sheen-{}", name_of(step)),
-                                     fmt::format("--array={}", fmt::join(numbers, ",")),
-                                     "--output=" + (folder_ / "%x-%a.log").string()};
-      if (!jobs.empty()) words.push_back("--dependency=aftercorr:" + jobs.back());
-      words.insert(words.end(), engine_.words.begin(), engine_.words.end());
-      words.push_back(script);
-      const std::string answer = ask("sbatch", words, folder_);
-      jobs.push_back(answer.substr(0, answer.find_first_of(";\n")));
-      core::write_file(folder_ / "jobs", fmt::format("{}\n", fmt::join(jobs, "\n")));
+      std::vector<std::string> beside;
+      for (int part = 1; step == Step::replay && parts > 1 && part <= parts; ++part) {
+        beside.push_back(submit(step, part, numbers, before, jobs));
+      }
+      if (!beside.empty()) before = beside;
+      before = {submit(step, std::nullopt, numbers, before, jobs)};
     }
     return jobs;
   }
@@ -139,13 +150,38 @@ class Queue {
   }
 
  private:
-  std::string script_of(Step step) const {
+  /// One array, whose tasks follow those of the arrays `before`. Notes its number in `jobs`, too.
+  std::string submit(Step step, std::optional<int> part, const std::vector<int>& numbers,
+                     const std::vector<std::string>& before, std::vector<std::string>& jobs) const {
+    std::string name(name_of(step));
+    if (part) name += fmt::format("-{}", *part);
+    const fs::path script = folder_ / (name + ".sh");
+    core::write_file(script, script_of(step, part));
+    std::vector<std::string> words{"--parsable",
+                                   "--requeue",
+                                   "--kill-on-invalid-dep=yes",
+                                   "--job-name=sheen-" + name,
+                                   fmt::format("--array={}", fmt::join(numbers, ",")),
+                                   "--output=" + (folder_ / "%x-%a.log").string()};
+    if (!before.empty()) {
+      words.push_back(fmt::format("--dependency=aftercorr:{}", fmt::join(before, ":")));
+    }
+    words.insert(words.end(), engine_.words.begin(), engine_.words.end());
+    words.push_back(script);
+    const std::string answer = ask("sbatch", words, folder_);
+    jobs.push_back(answer.substr(0, answer.find_first_of(";\n")));
+    core::write_file(folder_ / "jobs", fmt::format("{}\n", fmt::join(jobs, "\n")));
+    return jobs.back();
+  }
+
+  std::string script_of(Step step, std::optional<int> part) const {
     return fmt::format(
-        "#!/bin/sh\nexec {} batch {} -o {} --number \"$SLURM_ARRAY_TASK_ID\" --until {} "
+        "#!/bin/sh\nexec {} batch {} -o {} --number \"$SLURM_ARRAY_TASK_ID\" --until {}{} "
         "--threads \"${{SLURM_CPUS_PER_TASK:-1}}\"\n",
         quoted(fs::read_symlink("/proc/self/exe").string()),
         quoted(fs::absolute(engine_.jobs_file).string()),
-        quoted(fs::absolute(engine_.output).string()), name_of(step));
+        quoted(fs::absolute(engine_.output).string()), name_of(step),
+        part ? fmt::format(" --part {}", *part) : "");
   }
 
   const SlurmEngine& engine_;
@@ -175,7 +211,7 @@ Failures run_on_slurm(std::span<const SessionWork> sessions, const SlurmEngine& 
   const core::FolderLock lock(queue.folder());
   auto jobs = queue.left_over();
   if (jobs.empty()) {
-    jobs = queue.submit(steps_of(sessions, engine.until), numbers);
+    jobs = queue.submit(steps_of(sessions, engine.until), parts_of(sessions), numbers);
   } else {
     context.note("note: jobs of an earlier run are still in the queue; waiting for those");
   }
@@ -186,7 +222,7 @@ Failures run_on_slurm(std::span<const SessionWork> sessions, const SlurmEngine& 
   // What the tasks left.
   Failures failures;
   for (const SessionWork& work : sessions) {
-    if (const auto failure = read_failure(work.folder())) failures[work.job().name] = *failure;
+    if (const auto failure = failure_of(work)) failures[work.job().name] = *failure;
   }
   return failures;
 }

@@ -26,6 +26,7 @@ struct BatchOptions {
   std::filesystem::path output;
   std::vector<std::string> only;
   std::optional<int> number;
+  std::optional<int> part;
   bool on_slurm = false;
   std::vector<std::string> sbatch_words;
   LocalEngine local;
@@ -55,6 +56,13 @@ void choose(const std::vector<std::string>& only, std::optional<int> number,
   });
 }
 
+/// A part of the one session; nothing where it has no such part.
+std::vector<SessionWork> part_of(const SessionWork& session, int number) {
+  auto parts = session.parts();
+  if (static_cast<std::size_t>(number) > parts.size()) return {};
+  return {std::move(parts[static_cast<std::size_t>(number) - 1])};
+}
+
 void run_batch(const BatchOptions& options, const CommandContext& context) {
   // Read what is to be done.
   Jobs jobs = read_jobs(options.jobs_file);
@@ -62,6 +70,7 @@ void run_batch(const BatchOptions& options, const CommandContext& context) {
   context.check_outputs({options.output / "batch.html"});
   std::vector<SessionWork> sessions;
   for (const Job& job : jobs.jobs) sessions.emplace_back(jobs, job, options.output / job.name);
+  if (options.part) sessions = part_of(sessions.front(), *options.part);
 
   // Do it.
   const Failures failures = options.on_slurm
@@ -121,6 +130,14 @@ void add_batch_command(CommandLine& program, CommandContext& context) {
                             .not_negative()
                             .type("K");
   only.excludes(number);
+  const Option part = command
+                          .option("--part", options->part,
+                                  "With --number: only this part of its replay, counted from 1")
+                          .range(1, 100)
+                          .type("N");
+  command.after_parsing([number, part] {
+    if (part.is_given() && !number.is_given()) throw UsageError("--part asks for --number");
+  });
   Option engine =
       command.choice<bool>("--engine", options->on_slurm, {{"local", false}, {"slurm", true}},
                            "local: processes on this machine; slurm: job arrays by sbatch");

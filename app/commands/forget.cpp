@@ -3,6 +3,7 @@
 
 #include "app/state/joined_model.h"
 #include "core/diagnostics/error.h"
+#include "core/files/folder_lock.h"
 #include "core/text/number.h"
 
 #include <memory>
@@ -65,6 +66,8 @@ bool is_forgotten(const ForgetOptions& options, const fitting::StateView& view) 
 void run_forget(ForgetOptions options, const CommandContext& context) {
   if (options.outputs.state.empty()) options.outputs.state = options.state;
   context.check_outputs({options.outputs.model, options.outputs.state});
+  // Of two that change one state the second would lose what the first has done.
+  const auto lock = core::FolderLock::of_file(options.outputs.state);
   States states;
   states.push_back(std::make_unique<fitting::StateReader>(options.state));
   check_is_clear(options, *states.front());

@@ -5,6 +5,7 @@
 #include "app/state/joined_model.h"
 #include "app/state/session_states.h"
 #include "app/terminal_sink.h"
+#include "core/files/folder_lock.h"
 #include "core/files/staged_output.h"
 #include "pipeline/reconstruct.h"
 
@@ -41,6 +42,8 @@ void observe(const ResumeOptions& options, const fitting::StateHeader& like,
 void run_resume(ResumeOptions options, const CommandContext& context) {
   if (options.outputs.state.empty()) options.outputs.state = options.state;
   context.check_outputs({options.outputs.model, options.outputs.state});
+  // Of two that change one state the second would lose what the first has done.
+  const auto lock = core::FolderLock::of_file(options.outputs.state);
   States states;
   states.push_back(std::make_unique<fitting::StateReader>(options.state));
   const core::StagedOutput added(options.outputs.state);

@@ -4,6 +4,7 @@
 #include "app/interrupt.h"
 #include "core/diagnostics/error.h"
 #include "fitting/model_file/model_file.h"
+#include "fitting/state/level_walks.h"
 
 #include <fmt/format.h>
 
@@ -24,6 +25,31 @@ struct Frames {
   int first = 0;
   int last = 0;
 };
+
+/// What was done about walks of different exposure.
+nlohmann::ordered_json exposure_json(const fitting::WalkLevels& levels) {
+  nlohmann::ordered_json walks = nlohmann::json::array();
+  for (const fitting::LevelledWalk& walk : levels.walks) {
+    walks.push_back({{"session", walk.session}, {"views", walk.views}, {"gain", walk.gain}});
+  }
+  return {{"levelled", levels.is_used},
+          {"held_out_rmse", levels.trial ? nlohmann::ordered_json(levels.trial->as_is) : nullptr},
+          {"held_out_rmse_levelled",
+           levels.trial ? nlohmann::ordered_json(levels.trial->levelled) : nullptr},
+          {"walks", std::move(walks)}};
+}
+
+std::string exposure_text(const fitting::WalkLevels& levels) {
+  if (!levels.trial) return {};
+  std::string text = fmt::format(
+      "exposure {}: error of held-out views {:.4f} as they are, {:.4f} levelled\n",
+      levels.is_used ? "levelled" : "left as it is", levels.trial->as_is, levels.trial->levelled);
+  for (const fitting::LevelledWalk& walk : levels.walks) {
+    text += fmt::format("         {}: light times {:.3f} {:.3f} {:.3f}\n", walk.session,
+                        walk.gain[0], walk.gain[1], walk.gain[2]);
+  }
+  return text;
+}
 
 /// In the order of the names.
 std::map<std::string, Frames> frames_by_session(const States& states,
@@ -61,12 +87,18 @@ void write_joined_model(const States& states, std::span<const fitting::JoinedVie
   // The model first: when this ends between the two, the old state still gives both.
   const int count = static_cast<int>(views.size());
   if (!outputs.model.empty()) {
+    const fitting::WalkLevels levels = [&] {
+      Progress progress = context.progress("comparing walks", count);
+      return fitting::level_walks(states, views, context.threads, shower(progress));
+    }();
     Progress progress = context.progress("fitting", count);
     const fitting::JoinedFit fit =
-        fitting::fit_joined(states, views, context.threads, shower(progress));
+        fitting::fit_joined(states, views, levels, context.threads, shower(progress));
     fitting::write_model(outputs.model, states.front()->header().mesh, fit.fitter->light_field(),
                          fit.seen);
     document["samples"] = fit.fitter->statistics().samples;
+    document["exposure"] = exposure_json(levels);
+    text += exposure_text(levels);
     document["representation"] = states.front()->header().representation;
     document["model"] = outputs.model.string();
     text += fmt::format("written  {}\n", outputs.model.string());

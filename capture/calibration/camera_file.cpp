@@ -4,7 +4,7 @@
 #include "capture/calibration/camera_document.h"
 #include "capture/files/text_file.h"
 #include "core/diagnostics/error.h"
-#include "core/files/staged_output.h"
+#include "core/files/write_file.h"
 #include "core/text/lower_case.h"
 #include "core/text/number.h"
 
@@ -264,21 +264,15 @@ void write_camera(const std::filesystem::path& path, const core::CameraModel& ca
                                                                  : is_rational ? 8
                                                                                : 5));
 
-  core::StagedOutput output(path);
-  try {
-    cv::FileStorage storage(output.path().string(),
-                            cv::FileStorage::WRITE | cv::FileStorage::FORMAT_YAML);
-    if (!storage.isOpened()) {
-      throw core::Error(core::Error::Kind::run_failed, path, "cannot be written", "check the disk");
-    }
-    storage << "image_width" << intrinsics.width_px << "image_height" << intrinsics.height_px;
-    if (is_fisheye) storage << "fisheye_model" << 1;
-    storage << "camera_matrix" << K << "distortion_coefficients"
-            << cv::Mat(coefficients, true).reshape(1, 1);
-  } catch (const cv::Exception&) {
-    throw core::Error(core::Error::Kind::run_failed, path, "cannot be written", "check the disk");
-  }
-  output.commit();
+  // In memory: OpenCV takes what follows a ? in a file's name for options, and says nothing of a
+  // full disk.
+  cv::FileStorage storage(
+      ".yaml", cv::FileStorage::WRITE | cv::FileStorage::MEMORY | cv::FileStorage::FORMAT_YAML);
+  storage << "image_width" << intrinsics.width_px << "image_height" << intrinsics.height_px;
+  if (is_fisheye) storage << "fisheye_model" << 1;
+  storage << "camera_matrix" << K << "distortion_coefficients"
+          << cv::Mat(coefficients, true).reshape(1, 1);
+  core::write_file(path, storage.releaseAndGetString());
 }
 
 }  // namespace sheen::capture

@@ -3,6 +3,7 @@
 
 #include "capture/synthetic/hash.h"
 #include "core/concurrency/parallel_for.h"
+#include "core/image/srgb_curve.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,9 +28,8 @@ Eigen::Vector2f normal_pair(std::uint32_t seed) {
 
 /// IEC 61966-2-1: linear [0, 1] -> 8-bit code.
 std::uint8_t srgb_code(float linear) {
-  const float x = std::clamp(linear, 0.0f, 1.0f);
-  const float y = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
-  return static_cast<std::uint8_t>(std::lround(255 * y));
+  const float code = core::srgb_from_linear(std::clamp(linear, 0.0f, 1.0f));
+  return static_cast<std::uint8_t>(std::lround(255 * code));
 }
 
 }  // namespace

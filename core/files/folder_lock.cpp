@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
+#include <utility>
 
 namespace sheen::core {
 namespace {
@@ -49,14 +50,14 @@ int open_file(const std::filesystem::path& path) {
   return file;
 }
 
-void hold(int file, const std::filesystem::path& folder) {
+void hold(int file, const std::filesystem::path& locked) {
   if (flock(file, LOCK_EX | LOCK_NB) == 0) return;
   const bool is_held = errno == EWOULDBLOCK;
   const std::string fault = is_held
                                 ? "is in use by " + holder_in(file)
                                 : std::string("cannot be locked (") + std::strerror(errno) + ")";
   close(file);
-  throw bad_input(folder, fault,
+  throw bad_input(locked, fault,
                   is_held ? "wait for it or end it" : "choose a place whose files can be locked");
 }
 
@@ -69,14 +70,25 @@ bool is_same_file(int file, const std::filesystem::path& path) {
 
 }  // namespace
 
-FolderLock::FolderLock(const std::filesystem::path& folder) : path_(folder / ".lock") {
+FolderLock::FolderLock(const std::filesystem::path& folder)
+    : FolderLock(folder / ".lock", folder) {}
+
+FolderLock FolderLock::of_file(const std::filesystem::path& file) {
+  std::filesystem::path name(".");
+  name += file.filename();
+  name += ".lock";
+  return {std::filesystem::absolute(file).parent_path() / name, file};
+}
+
+FolderLock::FolderLock(std::filesystem::path lock, const std::filesystem::path& locked)
+    : path_(std::move(lock)) {
   std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
+  std::filesystem::create_directories(path_.parent_path(), failure);
   // Its last holder may remove the file between these two: then what is held is no lock.
   do {
     if (file_ >= 0) close(file_);
     file_ = open_file(path_);
-    hold(file_, folder);
+    hold(file_, locked);
   } while (!is_same_file(file_, path_));
   // Only for people: on a full disk the lock holds all the same.
   const std::string holder = this_process() + "\n";

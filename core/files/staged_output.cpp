@@ -3,9 +3,11 @@
 
 #include "core/diagnostics/error.h"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -27,9 +29,41 @@ fs::path sibling(const fs::path& path, const std::string& purpose) {
   return path.parent_path() / name.str();
 }
 
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+std::error_code last_failure() {
+  return {errno, std::generic_category()};
+}
+
 Error cannot_replace(const fs::path& path, const std::error_code& cause) {
   return {Error::Kind::run_failed, path, "cannot be moved into place (" + cause.message() + ")",
           "check free space and permissions of its folder"};
+}
+
+/// What a power cut must not take: contents reach the disk before their name does. Links are none
+/// of ours.
+std::error_code flush(const fs::path& path) {
+  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  if (file < 0) return errno == ELOOP ? std::error_code() : last_failure();
+  // File systems that cannot flush a folder say so by EINVAL.
+  const bool is_flushed = fsync(file) == 0 || errno == EINVAL;
+  const std::error_code failure = is_flushed ? std::error_code() : last_failure();
+  close(file);
+  return failure;
+}
+
+std::error_code flush_all(const fs::path& path) {
+  std::error_code failure;
+  if (fs::is_directory(path, failure)) {
+    for (fs::recursive_directory_iterator entry(path, failure), end; !failure && entry != end;
+         entry.increment(failure)) {
+      if (entry->is_symlink(failure)) continue;
+      if (const auto fault = flush(entry->path())) return fault;
+    }
+  }
+  return failure ? failure : flush(path);
 }
 
 /// A folder cannot be renamed over a folder that is not empty: step aside, move in, clear away.
@@ -59,7 +93,7 @@ StagedOutput::StagedOutput(std::filesystem::path final_path) : final_path_(std::
       final_path_.filename() == "..") {
     throw bad_input(final_path_, "is not a name for an output", "give a file or folder name");
   }
-  const fs::path parent = final_path_.has_parent_path() ? final_path_.parent_path() : fs::path(".");
+  const fs::path parent = folder_of(final_path_);
   std::error_code failure;
   fs::create_directories(parent, failure);
   if (!fs::is_directory(parent, failure)) {
@@ -79,13 +113,16 @@ StagedOutput::~StagedOutput() {
 }
 
 void StagedOutput::commit() {
+  if (const auto failure = flush_all(staged_path_)) throw cannot_replace(final_path_, failure);
   std::error_code failure;
   if (fs::is_directory(staged_path_, failure)) {
     replace_folder(staged_path_, final_path_);
-    return;
+  } else {
+    fs::rename(staged_path_, final_path_, failure);
+    if (failure) throw cannot_replace(final_path_, failure);
   }
-  fs::rename(staged_path_, final_path_, failure);
-  if (failure) throw cannot_replace(final_path_, failure);
+  // The name, too, where the file system can; the output stands in its place either way.
+  static_cast<void>(flush(folder_of(final_path_)));
 }
 
 void check_writable(const std::filesystem::path& path) {

@@ -2,6 +2,7 @@
 #include "core/atlas/atlas_vertices.h"
 #include "core/diagnostics/error.h"
 #include "core/files/write_file.h"
+#include "core/image/srgb_curve.h"
 #include "fitting/descriptor.h"
 #include "fitting/model_file/checksum.h"
 #include "fitting/model_file/document.h"
@@ -31,7 +32,7 @@ json as_json(const Eigen::Vector3f& v) {
 
 // Our colours are display-referred, glTF's vertex colours are linear.
 std::uint16_t linear_from_srgb(float srgb) {
-  const float linear = srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
+  const float linear = core::linear_from_srgb(srgb);
   return static_cast<std::uint16_t>(std::lround(std::clamp(linear, 0.0f, 1.0f) * 65535.0f));
 }
 

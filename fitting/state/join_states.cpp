@@ -4,6 +4,7 @@
 #include "core/diagnostics/error.h"
 #include "fitting/descriptor.h"
 #include "fitting/patch_fitter.h"
+#include "fitting/state/level_walks.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -75,11 +76,11 @@ void append(const core::SampleBatch& from, core::SampleBatch& to) {
   add(from.b, to.b);
 }
 
-/// Every view with the samples of all its shares, which follow each other in `views`.
-template <typename Action>
-void for_each_whole_view(std::span<const std::unique_ptr<StateReader>> states,
-                         std::span<const JoinedView> views, const ViewsDone& done,
-                         const Action& action) {
+}  // namespace
+
+void for_each_joined_view(std::span<const std::unique_ptr<StateReader>> states,
+                          std::span<const JoinedView> views, const ViewsDone& done,
+                          const JoinedViewAction& action) {
   core::SampleBatch share;
   core::SampleBatch batch;
   std::size_t count = 0;
@@ -95,8 +96,6 @@ void for_each_whole_view(std::span<const std::unique_ptr<StateReader>> states,
     done(count);
   }
 }
-
-}  // namespace
 
 std::vector<JoinedView> join(std::span<const std::unique_ptr<StateReader>> states) {
   for (const auto& state : states) check_alike(*states.front(), *state);
@@ -117,14 +116,15 @@ void write_joined(const std::filesystem::path& path,
   StateHeader header = states.front()->header();
   header.share = {};
   StateWriter writer(path, header);
-  for_each_whole_view(
+  for_each_joined_view(
       states, views, done,
       [&](const StateView& name, const core::SampleBatch& batch) { writer.append(name, batch); });
   writer.commit();
 }
 
 JoinedFit fit_joined(std::span<const std::unique_ptr<StateReader>> states,
-                     std::span<const JoinedView> views, int threads, const ViewsDone& done) {
+                     std::span<const JoinedView> views, const WalkLevels& levels, int threads,
+                     const ViewsDone& done) {
   const StateHeader& header = states.front()->header();
   JoinedFit fit{make_fitter(header.representation, header.mesh, header.options, threads),
                 SeenDirections(header.mesh.positions.size())};
@@ -134,7 +134,8 @@ JoinedFit fit_joined(std::span<const std::unique_ptr<StateReader>> states,
                           "is fitted as " + header.representation + ", which takes images",
                           "choose a representation that takes samples");
   }
-  for_each_whole_view(states, views, done, [&](const StateView&, const core::SampleBatch& batch) {
+  for_each_joined_view(states, views, done, [&](const StateView& name, core::SampleBatch& batch) {
+    levels.level(name, batch);
     note_seen(batch, fit.seen);
     patches->integrate(batch);
   });

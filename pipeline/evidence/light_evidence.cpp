@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/evidence/light_evidence.h"
 
+#include "core/image/srgb_curve.h"
 #include "core/numerics/median.h"
 
 #include <Eigen/Cholesky>
@@ -36,8 +37,7 @@ constexpr double kFits = 0.1;
 constexpr double kNothingFits = 0.28;
 
 float stops_of(float srgb) {
-  const float linear = srgb <= 0.04045F ? srgb / 12.92F : std::pow((srgb + 0.055F) / 1.055F, 2.4F);
-  return std::log2(linear);
+  return std::log2(core::linear_from_srgb(srgb));
 }
 
 /// Colour of a patch by direction: constant, u, v; one column per channel.

@@ -146,6 +146,66 @@ TEST_F(Batch, RunsOnlyWhatIsMissingOrHasChanged) {
   EXPECT_GT(time_of("export"), exported_again);
 }
 
+// A replay in parts gives the bytes of the undivided one, and the same figures; a part that is
+// there is not made again, and none is needed once they are merged.
+TEST_F(Batch, PartsGiveTheBytesOfTheWhole) {
+  const std::string common =
+      "hold_out: 4\nsteps: [replay, evaluate]\n"
+      "options: {replay: --representation mean --end 24, evaluate: --end 24}\nsessions:\n";
+  jobs(common + "  - {folder: session, name: whole}\n  - {folder: session, parts: 3}\n");
+  const ProgramRun run = batch({"--until", "replay"});
+  ASSERT_EQ(run.exit_code, 0) << run.standard_error;
+  const auto made = output_ / "session";
+  for (const char* name : {"replay/model.glb", "replay/poses.txt"}) {
+    EXPECT_EQ(read_file(made / name), read_file(output_ / "whole" / name)) << name;
+  }
+  auto whole = session(run, "whole");
+  const auto merged = session(run, "session");
+  EXPECT_EQ(merged.at("parts"), 3);
+  for (const char* key : {"frames", "posed", "seen", "patches", "model_bytes", "rejections"}) {
+    EXPECT_EQ(merged.at(key), whole.at(key)) << key;
+  }
+  for (auto& sector : whole.at("sectors")) {  // no part measures held-out views
+    sector["held_out_psnr"] = nullptr;
+    sector["held_out_views"] = 0;
+  }
+  EXPECT_EQ(merged.at("sectors"), whole.at("sectors"));
+
+  // The last one is lost: the others stay. Then all are merged and may go.
+  const auto time_of_part = [&](int number) {
+    return fs::last_write_time(made / ("part-" + std::to_string(number)) / "replay/step.json");
+  };
+  const auto first = time_of_part(1);
+  const auto last = time_of_part(3);
+  fs::remove_all(made / "part-3");
+  fs::remove_all(made / "replay");
+  ASSERT_EQ(batch({"--number", "1", "--part", "3", "--until", "replay"}).exit_code, 0);
+  EXPECT_GT(time_of_part(3), last);
+  EXPECT_FALSE(fs::exists(made / "replay"));
+  ASSERT_EQ(batch().exit_code, 0);
+  EXPECT_EQ(time_of_part(1), first);
+  EXPECT_EQ(read_file(made / "evaluate/sheet.png"),
+            read_file(output_ / "whole/evaluate/sheet.png"));
+  fs::remove_all(made / "part-1");
+  ASSERT_EQ(batch().exit_code, 0);
+  EXPECT_FALSE(fs::exists(made / "part-1"));
+  expect_no_unfinished_output();
+}
+
+TEST_F(Batch, APartThatFailsIsTold) {
+  jobs(
+      "sessions: [session]\nsteps: [replay]\nparts: 2\noptions: {replay: --patches detail --end "
+      "6}\n");
+  const ProgramRun run = batch();
+  EXPECT_EQ(run.exit_code, 1);
+  const auto told = session(run, "session");
+  EXPECT_EQ(told.at("state"), "failed");
+  EXPECT_NE(told.at("message").get<std::string>().find("a state holds samples"), std::string::npos);
+  EXPECT_EQ(told.at("files").at("failed.log"), "session/part-1/failed.log");
+  EXPECT_FALSE(fs::exists(output_ / "session/replay"));
+  expect_no_unfinished_output();
+}
+
 TEST_F(Batch, AFailingSessionStopsNoOtherAndIsTriedAgain) {
   const auto broken = folder_.path() / "broken";
   fs::copy(session_, broken);
@@ -284,7 +344,11 @@ TEST_F(Batch, RefusesBadFilesWithOneLine) {
   expect_refused("sessions: [a]\nhold_out: 0\nsteps: [replay, evaluate]", "hold_out: 0");
   expect_refused("sessions: [a]\nwanted: {seen: 2}", "seen");
   expect_refused("sessions: ['nowhere/*']", "no sessions");
+  for (const char* parts : {"0", "101", "2.5", "[2]"}) {
+    expect_refused(std::string("sessions: [a]\nparts: ") + parts, "parts");
+  }
   EXPECT_EQ(batch({"--engine", "slurm", "--number", "0"}).exit_code, 2);
+  EXPECT_EQ(batch({"--part", "1"}).exit_code, 2);
   expect_refused("sessions: [{folder: a, name: ../b}]", "name of a folder");
   EXPECT_FALSE(fs::exists(output_));
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Fit states by the commands: going on, joining and forgetting give the bytes of one run over the
 // frames that are left; a state that was damaged is refused.
+#include "core/files/folder_lock.h"
 #include "tests/app/copied_session.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <iterator>
@@ -137,6 +139,25 @@ TEST_F(OneFit, RefusesWhatCannotBeJoined) {
                    "1/3, 2/3 and 3/3");
   }
   EXPECT_FALSE(fs::exists(model));
+}
+
+// Two that read one state and replace it would keep the work of the later one alone.
+TEST_F(OneFit, WhoeverChangesAStateHasItAlone) {
+  const std::string before = bytes("first.state");
+  {
+    const auto lock = core::FolderLock::of_file(path("first.state"));
+    const std::string holder = "is in use by process " + std::to_string(getpid()) + " on ";
+    expect_refused({"forget", path("first.state"), "--frames", "0-1", "--quiet"}, holder);
+    expect_refused({"resume", path("first.state"), session_, "-o", path("model.glb"), "--start",
+                    "6", "--end", "9", "--quiet"},
+                   holder);
+    // What writes elsewhere only reads it.
+    expect_done(run_sheen({"forget", path("first.state"), "--frames", "0-1", "--state",
+                           path("other.state"), "--quiet"}));
+  }
+  EXPECT_TRUE(bytes("first.state") == before);
+  expect_done(run_sheen({"forget", path("first.state"), "--frames", "0-1", "--quiet"}));
+  EXPECT_TRUE(bytes("first.state") == bytes("other.state"));
 }
 
 TEST_F(OneFit, RefusesAnotherMesh) {

@@ -112,6 +112,49 @@ TEST(MatroskaRecording, OpensWhereverItIsCut) {
   EXPECT_EQ(count_frames(path), kStored);
 }
 
+/// What a power cut leaves of a file that was flushed when it held `flushed` and was written on to
+/// `written`: each of its blocks is as it was flushed (beyond that: zeros) or as it was written
+/// last, whichever the disk had come to, and its end may lie anywhere between.
+std::string after_power_cut(const std::string& flushed, const std::string& written,
+                            std::mt19937& random) {
+  constexpr std::size_t block = 512;
+  std::string left = flushed + std::string(written.size() - flushed.size(), '\0');
+  for (std::size_t at = 0; at < left.size(); at += block) {
+    if (random() % 2 == 0) left.replace(at, block, written, at, block);
+  }
+  return left.substr(0, flushed.size() + random() % (written.size() - flushed.size() + 1));
+}
+
+// What was flushed is there, whatever of later writes came to the disk: those of more pictures, and
+// of closing, which changes the beginning, too. Pictures wait for at most three stored after them.
+TEST(MatroskaRecording, LosesNothingFlushedToAPowerCut) {
+  const TemporaryFolder folder;
+  const StoredVideo video = stored_video(folder);
+  const auto path = folder.path() / "recorded.mkv";
+  MatroskaRecording recording(path, video.header, kRecordedSize);
+  std::vector<std::string> after;  // each picture
+  for (const LiveImage& picture : video.pictures) {
+    ASSERT_EQ(recording.append(picture), 0);
+    after.push_back(tests::read_file(path));
+  }
+  ASSERT_EQ(recording.close(), 0);
+  const std::string closed = tests::read_file(path);
+  std::mt19937 random(7);
+  for (int attempt = 0; attempt < 60; ++attempt) {
+    const std::size_t flushed = 8 + random() % (kStored - 8);  // pictures
+    const bool is_closing = attempt % 2 == 0;
+    const std::size_t last = flushed + random() % (kStored - flushed);
+    folder.write("cut.mkv",
+                 after_power_cut(after[flushed - 1], is_closing ? closed : after[last], random));
+    const auto source = open_video(folder.path() / "cut.mkv", kRecordedSize, {}, std::nullopt);
+    for (int i = 0; i < static_cast<int>(flushed) - 3; ++i) {
+      const auto frame = source->next();
+      ASSERT_TRUE(frame) << "frame " << i << " of " << flushed << " flushed, attempt " << attempt;
+      EXPECT_EQ(number_of(*frame), i) << attempt;
+    }
+  }
+}
+
 TEST(MatroskaRecording, TakesH265) {
   const TemporaryFolder folder;
   StoredVideo video;

@@ -3,7 +3,7 @@
 // and what is fitted is what a fitter gives that saw these views in their order. A file that was
 // cut or altered anywhere is refused.
 #include "core/diagnostics/error.h"
-#include "fitting/state/join_states.h"
+#include "fitting/state/level_walks.h"
 #include "tests/fitting/samples_for_tests.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/temporary_folder.h"
@@ -65,7 +65,8 @@ class FitState : public ::testing::Test {
 
   static std::string model_of(const fs::path& path) {
     const States states = open({path});
-    return testing::bytes_of(fit_joined(states, join(states), 1, nothing).fitter->light_field());
+    return testing::bytes_of(
+        fit_joined(states, join(states), {}, 1, nothing).fitter->light_field());
   }
 
   std::string representation_ = "mean";

@@ -34,10 +34,11 @@
     { key: "psnr", name: "PSNR, dB", text: number(2) },
     { key: "ssim", name: "SSIM", text: number(4) },
     { key: "patches", name: "Patches", text: number(0) },
+    { key: "parts", name: "Parts", text: number(0) },
     { key: "model_bytes", name: "Model, MB", text: number(2, 1e-6) },
     { key: "peak_rss_bytes", name: "Memory, MB", text: number(0, 1e-6) },
     { key: "total", name: "Time", text: duration },
-  ];
+  ].filter((column) => column.key !== "parts" || sessions.some((session) => session.parts > 1));
   const view = { sort: "rank", descending: false, hidden: new Set() };
   const shown = () => sessions.filter((session) => !view.hidden.has(session.state));
 
