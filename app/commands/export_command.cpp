@@ -75,7 +75,8 @@ void export_model(const ExportOptions& options, const CommandContext& context) {
 }
 
 void run_export(const ExportOptions& options, const CommandContext& context) {
-  const bool is_session = std::filesystem::is_directory(options.source);
+  std::error_code no_throw;
+  const bool is_session = std::filesystem::is_directory(options.source, no_throw);
   if (is_session) {
     export_dataset(options.source, options.output, options.dataset, options.frames, context);
     return;

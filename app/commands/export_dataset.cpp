@@ -46,7 +46,8 @@ std::string dataset_formats_help() {
 void export_dataset(const fs::path& source, const fs::path& folder, const DatasetExport& options,
                     const pipeline::FrameChoice& frames, const CommandContext& context) {
   const capture::DatasetFormat& format = format_named(options.format, source);
-  if (fs::exists(folder)) {
+  std::error_code no_throw;
+  if (fs::exists(folder, no_throw)) {
     throw core::bad_input(folder, "exists already", "choose another name for the data set");
   }
   context.check_outputs({folder});

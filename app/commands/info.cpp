@@ -86,7 +86,8 @@ nlohmann::ordered_json describe_state(const std::filesystem::path& path) {
 }
 
 nlohmann::ordered_json describe_path(const std::filesystem::path& path) {
-  if (std::filesystem::is_directory(path)) return describe_session(path);
+  std::error_code no_throw;
+  if (std::filesystem::is_directory(path, no_throw)) return describe_session(path);
   return fitting::is_state(path) ? describe_state(path) : describe_model(path);
 }
 

@@ -68,10 +68,11 @@ std::vector<std::string> image_names(const fs::path& bundle) {
   const fs::path folder = bundle.parent_path();
   const std::string stem = bundle.stem().string();
   fs::path list = folder / "list.txt";
+  std::error_code no_throw;
   // COLMAP writes NAME.bundle.out and NAME.list.txt.
   for (const std::string& name :
        {stem + ".list.txt", fs::path(stem).stem().string() + ".list.txt"}) {
-    if (fs::exists(folder / name)) list = folder / name;
+    if (fs::exists(folder / name, no_throw)) list = folder / name;
   }
   const std::string text = core::read_file(list, kMostDatasetBytes);
   std::vector<std::string> names;

@@ -314,9 +314,10 @@ void write_binary(const Path& folder, const Dataset& dataset) {
 }
 
 std::optional<Path> find_colmap_model(const Path& path) {
+  std::error_code no_throw;
   for (const char* place : {"", "sparse/0", "sparse", "colmap/sparse/0"}) {
     for (const char* name : {"cameras.bin", "cameras.txt"}) {
-      if (std::filesystem::exists(path / place / name)) return path / place;
+      if (std::filesystem::exists(path / place / name, no_throw)) return path / place;
     }
   }
   return std::nullopt;
@@ -342,7 +343,8 @@ void write_into_project(const Path& folder, const Dataset& dataset) {
 
 Dataset read_colmap_model(const Path& folder) {
   Dataset dataset;
-  if (std::filesystem::exists(folder / "cameras.bin")) {
+  std::error_code no_throw;
+  if (std::filesystem::exists(folder / "cameras.bin", no_throw)) {
     const auto indices = read_binary_cameras(folder / "cameras.bin", dataset);
     read_binary_images(folder / "images.bin", indices, dataset);
   } else {

@@ -19,6 +19,8 @@ std::optional<Eigen::Matrix3d> nearest_rotation(const Eigen::Matrix3d& written) 
   return parts.matrixU() * parts.matrixV().transpose();
 }
 
+constexpr std::size_t kMostNameBytes = 255;  // of a file or folder, in every file system here
+
 std::string image_within(const std::filesystem::path& file, const std::string& written) {
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 32 || c == 127; };
   const std::filesystem::path name = std::filesystem::path(written).lexically_normal();
@@ -27,6 +29,14 @@ std::string image_within(const std::filesystem::path& file, const std::string& w
     throw core::bad_input(
         file, "names the image '" + core::quotable(written) + "', which is not inside its folder",
         "put the images into the data set's folder and name them relative to it");
+  }
+  const bool is_long = std::any_of(name.begin(), name.end(), [](const std::filesystem::path& part) {
+    return part.native().size() > kMostNameBytes;
+  });
+  if (is_long) {
+    throw core::bad_input(
+        file, "names an image by more than " + std::to_string(kMostNameBytes) + " bytes",
+        "write it again with the program that made it");
   }
   return name.generic_string();
 }

@@ -18,12 +18,14 @@ std::span<const DatasetFormat* const> dataset_formats() {
 }
 
 std::filesystem::path images_of_dataset(const std::filesystem::path& path) {
-  if (!std::filesystem::is_directory(path)) return path.parent_path();
-  return std::filesystem::exists(path / "transforms.json") ? path : path / "images";
+  std::error_code no_throw;
+  if (!std::filesystem::is_directory(path, no_throw)) return path.parent_path();
+  return std::filesystem::exists(path / "transforms.json", no_throw) ? path : path / "images";
 }
 
 Dataset read_dataset(const std::filesystem::path& path, const std::filesystem::path& images) {
-  if (!std::filesystem::exists(path)) {
+  std::error_code no_throw;
+  if (!std::filesystem::exists(path, no_throw)) {
     throw core::bad_input(path, "there is no such file or folder", "check the path");
   }
   for (const DatasetFormat* format : dataset_formats()) {

@@ -56,7 +56,8 @@ void write_imported_session(const SessionImport& import, const fs::path& folder)
                           fmt::format("was taken by {} cameras", dataset.cameras.size()),
                           "a session has one: let the program that posed the images share them");
   }
-  if (fs::exists(folder)) {
+  std::error_code no_throw;
+  if (fs::exists(folder, no_throw)) {
     throw core::bad_input(folder, "exists already", "choose another name for the session");
   }
   std::sort(dataset.frames.begin(), dataset.frames.end(),

@@ -113,7 +113,8 @@ Dataset read_metashape(const fs::path& path, const fs::path& images) {
     const pugi::xml_node camera = found.node();
     if (!camera.attribute("enabled").as_bool(true)) continue;
     std::string label = image_within(path, camera.attribute("label").value());
-    if (!fs::exists(images / label)) {
+    std::error_code no_throw;
+    if (!fs::exists(images / label, no_throw)) {
       if (const auto named = names.find(label); named != names.end()) label = named->second;
     }
     const auto rows = numbers_of<16>(path, camera.child("transform"));

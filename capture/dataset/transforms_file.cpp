@@ -192,9 +192,10 @@ void add_split(const Dataset& dataset, ordered_json& file) {
 }
 
 std::optional<Path> find_transforms(const Path& path) {
-  if (std::filesystem::is_directory(path)) {
+  std::error_code no_throw;
+  if (std::filesystem::is_directory(path, no_throw)) {
     const Path inside = path / "transforms.json";
-    return std::filesystem::exists(inside) ? std::optional(inside) : std::nullopt;
+    return std::filesystem::exists(inside, no_throw) ? std::optional(inside) : std::nullopt;
   }
   return path.extension() == ".json" ? std::optional(path) : std::nullopt;
 }

@@ -24,7 +24,8 @@ std::vector<std::filesystem::path> plain_pictures(const Session& session,
   if (!session.image_pattern) return {};
   const auto name = NumberedName::parse(*session.image_pattern);
   if (!name) return {};
-  const int first = std::filesystem::exists(session.folder / name->at(0)) ? 0 : 1;
+  std::error_code no_throw;
+  const int first = std::filesystem::exists(session.folder / name->at(0), no_throw) ? 0 : 1;
   std::vector<std::filesystem::path> files;
   for (const int frame : frames) {
     files.push_back(session.folder / name->at(first + frame));

@@ -120,6 +120,8 @@ TEST(Metashape, HostileFilesAreRefused) {
     refused(good.substr(0, length), "");
   }
   refused(metashape("<camera label=\"../a\">" + pose, ""), "inside");
+  // Longer than names of files can be, which once ended the program (found by fuzz/metashape).
+  refused(metashape("<camera label=\"" + std::string(256, 'a') + "\">" + pose, ""), "255 bytes");
   refused(metashape("<camera label=\"a\"><transform>1 0 0</transform></camera>", ""), "16 numbers");
   refused(metashape("<camera label=\"a\"><transform>1 0 0 0 0 1 0 0 0 0 1 inf 0 0 0 1</transform>"
                     "</camera>",
