@@ -69,8 +69,8 @@ void legend(Layer layer) {
   }
   ImGui::Dummy({width, height});
   const bool views = layer == Layer::needs_views;
-  row(views ? "little error" : "fits", views ? "much to expect" : "error 12 %", theme::kQuiet);
-  swatch(unseen_colour(), "not seen yet");
+  row(views ? "enough views" : "fits", views ? "more views needed" : "error 12 %", theme::kQuiet);
+  swatch(unseen_colour(), "never seen");
 }
 
 void phase_line(const LiveStatus& live, const theme::Fonts& fonts) {
@@ -93,6 +93,8 @@ void phase_line(const LiveStatus& live, const theme::Fonts& fonts) {
   if (live.phase == LiveStatus::Phase::finished) return;
   if (!live.trouble.empty()) {
     wrapped(theme::kAlarm, live.trouble);
+  } else if (live.phase == LiveStatus::Phase::paused) {
+    wrapped(theme::kQuiet, "Nothing is taken in until you go on");
   } else if (live.is_flat) {
     wrapped(theme::kGood, "Quality no longer rises: you may stop");
   } else {
@@ -101,7 +103,7 @@ void phase_line(const LiveStatus& live, const theme::Fonts& fonts) {
 }
 
 void coverage_bar(const LiveStatus& live, const theme::Fonts& fonts) {
-  heading("Coverage");
+  heading("Directions looked from");
   ImGui::PushFont(fonts.large);
   // Nothing is known before the planner has looked from everywhere once.
   text(theme::kText, live.coverage > 0 ? fmt::format("{:.0f} %", 100 * live.coverage) : "\u2013");
