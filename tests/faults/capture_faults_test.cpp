@@ -76,7 +76,9 @@ class CaptureFaults : public ::testing::Test {
     const auto count = static_cast<std::ptrdiff_t>(sent_.size());
     for (std::size_t i = 0; i < left.size(); ++i) {
       EXPECT_LT(number_of(left[i]), count) << "image " << i << " is none that was sent";
-      if (i > 0) EXPECT_EQ((number_of(left[i - 1]) + 1) % count, number_of(left[i])) << i;
+      if (i > 0) {
+        EXPECT_EQ((number_of(left[i - 1]) + 1) % count, number_of(left[i])) << i;
+      }
     }
     return left.size();
   }
