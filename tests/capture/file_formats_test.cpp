@@ -137,7 +137,7 @@ TEST(BoardFile, RefusesEachFault) {
   };
   refuse("", "board");
   refuse("[1, 2", "YAML");
-  refuse(std::string(100000, '['), "YAML");
+  refuse(std::string(100000, '['), "nests");
   refuse("a: 1\n", "tag_bundles");
   refuse("tag_bundles: 3\n", "list");
   refuse(bundle("tag99h9", "{id: 0, size: 1}"), "tag99h9");
