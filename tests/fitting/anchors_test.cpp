@@ -246,7 +246,7 @@ TEST_F(AnchorsInAFile, GiveBackEveryBit) {
 TEST_F(AnchorsInAFile, WithBrokenContentAreRefused) {
   EXPECT_NO_THROW(static_cast<void>(read([](ModelPart&) {})));
   const auto vertices = model_of(*fitter_).anchors()->layout().vertices;
-  const auto with_vertices = [&](std::vector<std::uint32_t> changed) {
+  const auto with_vertices = [&](const std::vector<std::uint32_t>& changed) {
     return
         [changed](ModelPart& part) { part.arrays["anchors"] = std::as_bytes(std::span(changed)); };
   };
