@@ -43,4 +43,20 @@ std::optional<ViewCommand> command_of(const KeyPress& press) {
   return std::nullopt;
 }
 
+bool turns(ViewState& state, ViewCommand command) {
+  switch (command) {
+    case ViewCommand::swap_views:
+      state.camera_is_large = !state.camera_is_large;
+      return true;
+    case ViewCommand::toggle_overlay:
+      state.overlay = !state.overlay;
+      return true;
+    case ViewCommand::toggle_path:
+      state.path = !state.path;
+      return true;
+    default:
+      return false;
+  }
+}
+
 }  // namespace sheen::app

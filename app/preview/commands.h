@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "app/preview/view_state.h"
 #include "app/preview/window.h"
 
 #include <optional>
@@ -40,5 +41,8 @@ struct KeyBinding {
 std::span<const KeyBinding> key_bindings();
 
 std::optional<ViewCommand> command_of(const KeyPress& press);
+
+/// Obeys a command that shows, hides or swaps parts of the views; false for all others.
+bool turns(ViewState& state, ViewCommand command);
 
 }  // namespace sheen::app

@@ -2,12 +2,9 @@
 #include "app/preview/preview_window.h"
 
 #include "app/preview/snapshot.h"
-#include "app/preview/window_layout.h"
-#include "core/diagnostics/error.h"
 #include "core/geometry/tangent_frame.h"
 #include "fitting/patch_light_field.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace sheen::app {
@@ -100,56 +97,41 @@ void PreviewWindow::paint() {
 }
 
 void PreviewWindow::lay_out() {
-  const ImVec2 display = ImGui::GetIO().DisplaySize;
-  const float panel = std::min(layout::kPanelWidth * window_.content_scale(), 0.5f * display.x);
-  const ImVec2 view(display.x - panel, display.y);
-  show_views(view);
-  show_panel({view.x, 0}, {panel, display.y});
+  const layout::Area views = layout::views_area(window_.content_scale());
+  show_views(views);
+  show_panel(layout::panel_area(window_.content_scale()));
   if (const auto patch = patch_news()) {
     const float margin = layout::kMargin * window_.content_scale();
-    show_patch_card(*patch, {view.x - margin, view.y - margin});
+    show_patch_card(*patch, {views.size.x - margin, views.size.y - margin});
   }
   if (state_.help) show_help(subject_.live != nullptr);
 }
 
-void PreviewWindow::show_views(const ImVec2& size) {
-  ImGui::SetNextWindowPos({0, 0});
-  ImGui::SetNextWindowSize(size);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{0, 0});
-  ImGui::Begin("views", nullptr,
-               layout::kFixed | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground);
-  ImGui::PopStyleVar();
+void PreviewWindow::show_views(const layout::Area& area) {
+  layout::begin_views(area);
   const bool has_camera = subject_.live != nullptr;
   const bool camera_is_large = has_camera && state_.camera_is_large;
   if (camera_is_large) {
-    camera_view_.show({0, 0}, size, state_);
+    camera_view_.show(area.corner, area.size, state_);
   } else {
-    model_view_.show({0, 0}, size, state_, trail_, true);
+    model_view_.show(area.corner, area.size, state_, trail_, true);
   }
   if (has_camera) {
     // The other one stands in the lower left corner, framed.
-    const float margin = layout::kMargin * window_.content_scale();
-    const auto& lens = subject_.live->camera();
-    const float width = layout::kInsetWidth * size.x;
-    const float height =
-        width * static_cast<float>(lens.height_px()) / static_cast<float>(lens.width_px());
-    const ImVec2 corner(margin, size.y - margin - height);
+    const layout::Area inset =
+        layout::inset_area(area, subject_.live->camera(), window_.content_scale());
     if (camera_is_large) {
-      model_view_.show(corner, {width, height}, state_, trail_, false);
+      model_view_.show(inset.corner, inset.size, state_, trail_, false);
     } else {
-      camera_view_.show(corner, {width, height}, state_);
+      camera_view_.show(inset.corner, inset.size, state_);
     }
-    ImGui::GetWindowDrawList()->AddRect(corner, {corner.x + width, corner.y + height},
-                                        ImGui::GetColorU32(theme::kRaised), 0, 0,
-                                        1.5f * window_.content_scale());
+    layout::frame_inset(inset, window_.content_scale());
   }
   ImGui::End();
 }
 
-void PreviewWindow::show_panel(const ImVec2& corner, const ImVec2& size) {
-  ImGui::SetNextWindowPos(corner);
-  ImGui::SetNextWindowSize(size);
-  ImGui::Begin("panel", nullptr, layout::kFixed & ~ImGuiWindowFlags_NoScrollbar);
+void PreviewWindow::show_panel(const layout::Area& area) {
+  layout::begin_panel(area);
   PanelContents contents;
   if (!note_.empty()) status_.note = note_;
   contents.live = subject_.live != nullptr ? &status_ : nullptr;
@@ -211,21 +193,13 @@ void PreviewWindow::obey(ViewCommand command) {
 
 void PreviewWindow::obey_session(ViewCommand command) {
   note_.clear();
+  if (turns(state_, command)) return;
   switch (command) {
     case ViewCommand::show_needs_views:
       state_.layer = Layer::needs_views;
       break;
     case ViewCommand::show_misfit:
       state_.layer = Layer::misfit;
-      break;
-    case ViewCommand::swap_views:
-      state_.camera_is_large = !state_.camera_is_large;
-      break;
-    case ViewCommand::toggle_overlay:
-      state_.overlay = !state_.overlay;
-      break;
-    case ViewCommand::toggle_path:
-      state_.path = !state_.path;
       break;
     case ViewCommand::pause:
       subject_.live->set_paused(status_.phase != LiveStatus::Phase::paused);
@@ -244,11 +218,7 @@ void PreviewWindow::obey_session(ViewCommand command) {
 void PreviewWindow::save_snapshot() {
   image_ = window_.image();
   if (subject_.snapshot_folder.empty()) return;
-  try {
-    note_ = "Snapshot " + write_snapshot(image_, subject_.snapshot_folder).filename().string();
-  } catch (const core::Error& error) {
-    note_ = error.what();
-  }
+  note_ = app::save_snapshot(image_, subject_.snapshot_folder);
 }
 
 }  // namespace sheen::app

@@ -9,6 +9,7 @@
 #include "app/preview/redraw_pace.h"
 #include "app/preview/side_panel.h"
 #include "app/preview/window.h"
+#include "app/preview/window_layout.h"
 #include "fitting/light_field.h"
 
 #include <Eigen/Core>
@@ -41,8 +42,8 @@ class PreviewWindow {
   void look_at_model();
   void paint();
   void lay_out();
-  void show_views(const ImVec2& size);
-  void show_panel(const ImVec2& corner, const ImVec2& size);
+  void show_views(const layout::Area& area);
+  void show_panel(const layout::Area& area);
   [[nodiscard]] std::optional<PatchNews> patch_news();
   void obey_session(ViewCommand command);
   void save_snapshot();

@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: MIT
 #include "app/preview/snapshot.h"
 
+#include "core/diagnostics/error.h"
 #include "core/image/write_image.h"
 
 #include <fmt/format.h>
 
 namespace sheen::app {
 
-std::filesystem::path write_snapshot(const cv::Mat& image, const std::filesystem::path& folder) {
+std::string save_snapshot(const cv::Mat& image, const std::filesystem::path& folder) {
   int number = 1;
-  const auto name = [&] { return folder / fmt::format("sheen-{:03}.png", number); };
-  while (std::filesystem::exists(name())) ++number;
-  core::write_image(name(), image);
-  return name();
+  const auto name = [&] { return fmt::format("sheen-{:03}.png", number); };
+  std::error_code no_throw;
+  while (std::filesystem::exists(folder / name(), no_throw)) ++number;
+  try {
+    core::write_image(folder / name(), image);
+  } catch (const core::Error& error) {
+    return error.what();
+  }
+  return "Snapshot " + name();
 }
 
 }  // namespace sheen::app

@@ -4,11 +4,12 @@
 #include <opencv2/core/mat.hpp>
 
 #include <filesystem>
+#include <string>
 
 namespace sheen::app {
 
-/// Writes sheen-001.png, or the next number that is free, into a folder and returns its path.
-/// Throws core::Error.
-std::filesystem::path write_snapshot(const cv::Mat& image, const std::filesystem::path& folder);
+/// Writes sheen-001.png, or the next number that is free, into a folder. Returns what to tell: its
+/// name, or why there is none.
+std::string save_snapshot(const cv::Mat& image, const std::filesystem::path& folder);
 
 }  // namespace sheen::app

@@ -5,8 +5,6 @@
 #include "app/preview/panel_words.h"
 #include "app/preview/snapshot.h"
 #include "app/preview/theme.h"
-#include "app/preview/window_layout.h"
-#include "core/diagnostics/error.h"
 
 #include <fmt/format.h>
 
@@ -43,7 +41,9 @@ bool WalkWindow::redraw(double longest_wait_s) {
   }
   lay_out();
   window_.draw();
-  if (std::exchange(snapshot_wanted_, false)) save_snapshot();
+  if (std::exchange(snapshot_wanted_, false)) {
+    note_ = save_snapshot(window_.image(), subject_.snapshot_folder);
+  }
   window_.show();
   return !window_.wants_to_close();
 }
@@ -90,47 +90,28 @@ void WalkWindow::look_for_missing() {
 }
 
 void WalkWindow::lay_out() {
-  const ImVec2 display = ImGui::GetIO().DisplaySize;
-  const float panel = std::min(layout::kPanelWidth * window_.content_scale(), 0.5f * display.x);
-  const ImVec2 view(display.x - panel, display.y);
-  show_views(view);
-  show_panel({view.x, 0}, {panel, display.y});
+  show_views(layout::views_area(window_.content_scale()));
+  show_panel(layout::panel_area(window_.content_scale()));
 }
 
-void WalkWindow::show_views(const ImVec2& size) {
-  ImGui::SetNextWindowPos({0, 0});
-  ImGui::SetNextWindowSize(size);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{0, 0});
-  ImGui::Begin("views", nullptr,
-               layout::kFixed | ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoBackground);
-  ImGui::PopStyleVar();
-  const float margin = layout::kMargin * window_.content_scale();
-  const float width = layout::kInsetWidth * size.x;
-  const auto& lens = sight_.camera;
-  const float height =
-      width * static_cast<float>(lens.height_px()) / static_cast<float>(lens.width_px());
-  const ImVec2 corner(margin, size.y - margin - height);
+void WalkWindow::show_views(const layout::Area& area) {
+  layout::begin_views(area);
+  const layout::Area inset = layout::inset_area(area, sight_.camera, window_.content_scale());
   if (!hull_) {
-    camera_view_.show({0, 0}, size, state_);
+    camera_view_.show(area.corner, area.size, state_);
   } else if (state_.camera_is_large) {
-    camera_view_.show({0, 0}, size, state_);
-    hull_->view.show(corner, {width, height}, state_, trail_, false);
+    camera_view_.show(area.corner, area.size, state_);
+    hull_->view.show(inset.corner, inset.size, state_, trail_, false);
   } else {
-    hull_->view.show({0, 0}, size, state_, trail_, true);
-    camera_view_.show(corner, {width, height}, state_);
+    hull_->view.show(area.corner, area.size, state_, trail_, true);
+    camera_view_.show(inset.corner, inset.size, state_);
   }
-  if (hull_) {
-    ImGui::GetWindowDrawList()->AddRect(corner, {corner.x + width, corner.y + height},
-                                        ImGui::GetColorU32(theme::kRaised), 0, 0,
-                                        1.5f * window_.content_scale());
-  }
+  if (hull_) layout::frame_inset(inset, window_.content_scale());
   ImGui::End();
 }
 
-void WalkWindow::show_panel(const ImVec2& corner, const ImVec2& size) const {
-  ImGui::SetNextWindowPos(corner);
-  ImGui::SetNextWindowSize(size);
-  ImGui::Begin("panel", nullptr, layout::kFixed & ~ImGuiWindowFlags_NoScrollbar);
+void WalkWindow::show_panel(const layout::Area& area) const {
+  layout::begin_panel(area);
   ImGui::PushFont(window_.fonts().large);
   text(theme::kText, "Recording");
   ImGui::PopFont();
@@ -162,26 +143,10 @@ void WalkWindow::show_panel(const ImVec2& corner, const ImVec2& size) const {
   ImGui::End();
 }
 
-void WalkWindow::save_snapshot() {
-  try {
-    note_ =
-        "Snapshot " + write_snapshot(window_.image(), subject_.snapshot_folder).filename().string();
-  } catch (const core::Error& error) {
-    note_ = error.what();
-  }
-}
-
 void WalkWindow::obey(const KeyPress& press) {
-  switch (command_of(press).value_or(ViewCommand::help)) {
-    case ViewCommand::swap_views:
-      state_.camera_is_large = !state_.camera_is_large;
-      break;
-    case ViewCommand::toggle_overlay:
-      state_.overlay = !state_.overlay;
-      break;
-    case ViewCommand::toggle_path:
-      state_.path = !state_.path;
-      break;
+  const auto command = command_of(press);
+  if (!command || turns(state_, *command)) return;
+  switch (*command) {
     case ViewCommand::frame_object:
       if (hull_) hull_->view.camera().frame();
       break;

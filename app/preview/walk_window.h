@@ -6,6 +6,7 @@
 #include "app/preview/object_painter.h"
 #include "app/preview/walk_subject.h"
 #include "app/preview/window.h"
+#include "app/preview/window_layout.h"
 
 #include <memory>
 #include <string>
@@ -36,10 +37,9 @@ class WalkWindow {
   void show_hull(std::shared_ptr<const core::Mesh> hull);
   void look_for_missing();
   void lay_out();
-  void show_views(const ImVec2& size);
-  void show_panel(const ImVec2& corner, const ImVec2& size) const;
+  void show_views(const layout::Area& area);
+  void show_panel(const layout::Area& area) const;
   void obey(const KeyPress& press);
-  void save_snapshot();
 
   WalkSubject subject_;
   Window window_;

@@ -2,7 +2,7 @@
 #include "capture/calibration/camera_document.h"
 
 #include "core/diagnostics/error.h"
-#include "core/text/bracket_depth.h"
+#include "core/text/nesting.h"
 #include "core/text/number.h"
 
 #include <nlohmann/json.hpp>
@@ -234,7 +234,7 @@ CameraDocument parse_camera_document(const std::string& text, const std::filesys
   const std::size_t begin = text.find_first_not_of(" \t\n");
   if (begin == std::string::npos) fail_unknown(path);
   if (text[begin] == '<') return read_xml(text, path);
-  if (core::bracket_depth(text) > core::kMostBracketDepth) {
+  if (core::bracket_depth(text) > core::kMostNesting) {
     refuse_camera_file(path, "is nested too deeply for a camera file");
   }
   if (text[begin] == '{') return {read_json(text, path), false, {}};

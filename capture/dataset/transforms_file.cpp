@@ -6,7 +6,7 @@
 #include "core/diagnostics/error.h"
 #include "core/files/read_file.h"
 #include "core/files/write_file.h"
-#include "core/text/json_depth.h"
+#include "core/text/nesting.h"
 #include "core/text/number.h"
 
 #include <nlohmann/json.hpp>
@@ -212,7 +212,7 @@ void write_transforms_into(const Path& folder, const Dataset& dataset) {
 
 Dataset read_transforms(const Path& path) {
   const std::string text = core::read_file(path, kMostDatasetBytes);
-  if (core::json_depth(text) > core::kMostJsonDepth) refuse_transforms(path, "nests too deep");
+  if (core::json_depth(text) > core::kMostNesting) refuse_transforms(path, "nests too deep");
   const ordered_json file = ordered_json::parse(text, nullptr, false);
   const bool is_list = file.is_object() && file.contains("frames") && file["frames"].is_array();
   if (!is_list) refuse_transforms(path, "is no JSON with a list of frames");

@@ -5,7 +5,7 @@
 #include "capture/pose/tag_family.h"
 #include "core/diagnostics/error.h"
 #include "core/files/write_file.h"
-#include "core/text/bracket_depth.h"
+#include "core/text/nesting.h"
 #include "core/text/number.h"
 
 #include <yaml-cpp/yaml.h>
@@ -28,7 +28,7 @@ class BoardReader {
  public:
   explicit BoardReader(const std::filesystem::path& path) : path_(path) {
     const std::string text = read_text_file(path, kMaxBoardBytes);
-    if (core::bracket_depth(text) > core::kMostBracketDepth) fail("nests its brackets too deep");
+    if (core::bracket_depth(text) > core::kMostNesting) fail("nests its brackets too deep");
     root_ = YAML::Load(text);
   }
 

@@ -12,7 +12,7 @@
 #include "capture/source/still_reader.h"
 #include "capture/source/video_source.h"
 #include "core/diagnostics/error.h"
-#include "core/text/json_depth.h"
+#include "core/text/nesting.h"
 
 #include <Eigen/SVD>
 #include <nlohmann/json.hpp>
@@ -34,7 +34,7 @@ class SessionReader {
   explicit SessionReader(const std::filesystem::path& folder)
       : folder_(folder), path_(folder / "session.json") {
     const std::string text = read_text_file(path_, kMaxSessionBytes);
-    if (core::json_depth(text) > core::kMostJsonDepth) this->fail("nests too deep");
+    if (core::json_depth(text) > core::kMostNesting) this->fail("nests too deep");
     try {
       root_ = json::parse(text);
     } catch (const json::parse_error& fault) {

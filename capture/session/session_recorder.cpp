@@ -20,13 +20,6 @@ constexpr std::size_t kMostWaitingBytes = std::size_t{256} << 20;
 constexpr auto kFlushPause =
     std::chrono::milliseconds(500);  // loses at most a second with its work
 
-/// What a recording holds besides images is on the disk before the first of them.
-void flush_files(const fs::path& folder) {
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    static_cast<void>(FileHandle::open_to_read(entry.path()).flush());
-  }
-}
-
 void refuse_existing(const fs::path& folder) {
   std::error_code no_throw;
   if (!fs::exists(folder, no_throw) || fs::is_empty(folder, no_throw)) return;
@@ -72,8 +65,7 @@ SessionRecorder::SessionRecorder(const fs::path& folder, const SessionSetup& set
   }
   written_bytes_ = video_->bytes();
   write_session_file(staged.path(), session);
-  flush_files(staged.path());
-  staged.commit();
+  staged.commit();  // on the disk before the first image
 
   writer_ = std::jthread([this] { write_all(); });
   flusher_ = std::jthread([this](const std::stop_token& stop) { flush_until_stopped(stop); });

@@ -3,7 +3,7 @@
 
 #include "core/diagnostics/error.h"
 #include "core/files/read_file.h"
-#include "core/text/json_depth.h"
+#include "core/text/nesting.h"
 
 #include <array>
 #include <cmath>
@@ -156,7 +156,7 @@ GltfContainer read_gltf_container(const std::filesystem::path& path) {
   if (word_at(gltf.file, 8) > gltf.file.size()) throw GltfFault("is shorter than its header says");
   const auto text = chunk_at(gltf.file, kHeader, kJson);
   if (!text) throw GltfFault("is not a binary glTF 2.0 file");
-  if (json_depth(*text) > kMostJsonDepth) throw GltfFault("holds JSON that nests without end");
+  if (json_depth(*text) > kMostNesting) throw GltfFault("holds JSON that nests without end");
   gltf.document = json::parse(*text, nullptr, false);
   if (!gltf.document.is_object()) throw GltfFault("holds JSON that cannot be parsed");
   find_buffers(gltf, binary_chunk(gltf.file, kHeader + kChunkHeader + text->size()));

@@ -43,7 +43,8 @@ const ModelUpdate& QuadFitter::integrate(const core::Observation& observation) {
     return update_;
   }
   update_.elements = {static_cast<std::uint32_t>(model_.element_count())};
-  model_.add(keep_view(observation, depth_, options.views.quality), std::move(depths));
+  model_.add(keep_view(observation, depth_, options.views.quality, Surroundings::continued),
+             std::move(depths));
   return update_;
 }
 

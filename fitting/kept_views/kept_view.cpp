@@ -84,12 +84,12 @@ Eigen::Vector3d KeptView::eye() const {
   return camera_from_object.linear().transpose() * -camera_from_object.translation();
 }
 
-KeptView keep_view(const core::Observation& observation, const core::DepthImage& depth,
-                   int quality) {
+KeptView keep_view(const core::Observation& observation, const core::DepthImage& depth, int quality,
+                   Surroundings surroundings) {
   assert(!depth.box().empty());
   cv::Mat image;
   observation.image(depth.box()).convertTo(image, CV_8UC3, 1 / observation.gain);
-  continue_object(depth.depth_m(), image);
+  if (surroundings == Surroundings::continued) continue_object(depth.depth_m(), image);
   grey_background(depth.depth_m(), image);
   return {observation.camera, observation.camera_from_object, depth.box(),
           core::encode_jpeg(image, quality)};

@@ -29,10 +29,14 @@ struct KeptView {
   [[nodiscard]] Eigen::Vector3d eye() const;
 };
 
-/// Keeps the object's pixels within `depth.box()`, which is not empty. Beside it its colours are
-/// continued, far from it all is grey. `quality` of the JPEG in [1, 100].
-KeptView keep_view(const core::Observation& observation, const core::DepthImage& depth,
-                   int quality);
+/// What a kept photograph shows beside the object: what was there, or the object's colours
+/// continued, for drawing that reaches a little beyond it.
+enum class Surroundings { photographed, continued };
+
+/// Keeps the object's pixels within `depth.box()`, which is not empty, and those beside it; far
+/// from it all is grey. `quality` of the JPEG in [1, 100].
+KeptView keep_view(const core::Observation& observation, const core::DepthImage& depth, int quality,
+                   Surroundings surroundings);
 
 /// How photographs are kept, and how many of them stay decoded while a model is drawn.
 struct KeptViewOptions {

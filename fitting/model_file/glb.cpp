@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/model_file/glb.h"
 
-#include "core/text/json_depth.h"
+#include "core/text/nesting.h"
 #include "fitting/model_file/model_part.h"
 
 #include <bit>
@@ -79,7 +79,7 @@ Glb parse_glb(std::string_view file) {
   const std::string_view text = take_chunk(file, offset, kJsonChunk);
   const std::string_view binary = take_chunk(file, offset, kBinaryChunk);
   if (offset != file.size()) throw ModelFault("something follows its last chunk");
-  if (core::json_depth(text) > core::kMostJsonDepth) {
+  if (core::json_depth(text) > core::kMostNesting) {
     throw ModelFault("its JSON chunk nests without end");
   }
   nlohmann::json document = nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false);

@@ -86,7 +86,7 @@ const ModelUpdate& EigenspaceFitter::integrate(const core::Observation& observat
   depth_.draw(observation.view, observation.image.size(), observation.camera_from_object);
   if (depth_.box().empty()) return update_;
   directions_.push_back((eye - frame_.centre).normalized());
-  photographs_.push_back(keep_view(observation, depth_, kJpegQuality));
+  photographs_.push_back(keep_view(observation, depth_, kJpegQuality, Surroundings::photographed));
   if (photographs_.size() >= std::max(2 * packed_, kFirst)) pack();
   return update_;
 }

@@ -2,7 +2,7 @@
 #include "fitting/state/state_file.h"
 
 #include "core/diagnostics/error.h"
-#include "core/text/json_depth.h"
+#include "core/text/nesting.h"
 
 #include <nlohmann/json.hpp>
 
@@ -169,8 +169,7 @@ void StateReader::read_header() {
   std::string text(length, '\0');
   take(text.data(), text.size());
   try {
-    if (core::json_depth(text) > core::kMostJsonDepth)
-      fail("was altered: its header nests too deep");
+    if (core::json_depth(text) > core::kMostNesting) fail("was altered: its header nests too deep");
     const auto header = nlohmann::json::parse(text);
     header_.representation = header.at("representation").get<std::string>();
     header_.options = header.at("options").get<OptionValues>();

@@ -20,7 +20,8 @@ class ViewTextureFitter final : public Fitter {
     depth_.draw(observation.view, observation.image.size(), observation.camera_from_object);
     if (depth_.box().empty()) return update_;
     update_.elements = {static_cast<std::uint32_t>(model_.element_count())};
-    model_.add(keep_view(observation, depth_, model_.options().views.quality));
+    model_.add(
+        keep_view(observation, depth_, model_.options().views.quality, Surroundings::photographed));
     return update_;
   }
 

@@ -17,7 +17,7 @@
 namespace sheen::pipeline {
 namespace {
 
-constexpr std::size_t kMostOutlineViews = 16, kOutlineSpacing = 4;
+constexpr std::size_t kMostOutlineViews = 24, kOutlineSpacing = 4;
 constexpr int kColourPixels = 3000;  // from which a view's colours are learnt
 constexpr double kReach = 0.12;      // of the object's radius: how far off an outline may be
 constexpr double kLeastReach_px = 6, kMostReach_px = 40;

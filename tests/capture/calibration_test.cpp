@@ -80,22 +80,26 @@ TEST(Calibration, FindsTheLensOfExactPoints) {
   EXPECT_TRUE(find_faults(*found, {}).empty());
 }
 
+/// Of views with Gaussian noise of 0.2 px: every parameter within four standard deviations of the
+/// truth, and the residual that noise leaves: 0.2 px per coordinate, sqrt(2) times that per point.
+void expect_within_its_errors(const Calibration& found, const core::CameraModel& truth) {
+  EXPECT_NEAR(found.rms_px, 0.2 * std::numbers::sqrt2, 0.02);
+  const auto& a = found.camera.intrinsics();
+  const auto& b = truth.intrinsics();
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_LT(std::abs(a.focal_px[i] - b.focal_px[i]), 4 * found.focal_sigma_px[i]);
+    EXPECT_LT(std::abs(a.principal_px[i] - b.principal_px[i]), 4 * found.principal_sigma_px[i]);
+  }
+  EXPECT_LT(found.focal_sigma_px.maxCoeff(), 2);
+}
+
 TEST(Calibration, StaysWithinWhatItSaysOfItsErrors) {
-  // Gaussian noise of 0.2 px: every parameter within four standard deviations of the truth, and
-  // the residual that noise leaves: 0.2 px per coordinate, sqrt(2) times that per point.
   const auto truth = make_camera(kSize.width_px, kSize.height_px, true);
   for (const unsigned seed : {2U, 3U, 4U}) {
     SCOPED_TRACE(seed);
     const auto found = calibrate_camera(good_views(truth, 14, 0.2, seed), kSize);
     ASSERT_TRUE(found);
-    EXPECT_NEAR(found->rms_px, 0.2 * std::numbers::sqrt2, 0.02);
-    const auto& a = found->camera.intrinsics();
-    const auto& b = truth.intrinsics();
-    for (int i = 0; i < 2; ++i) {
-      EXPECT_LT(std::abs(a.focal_px[i] - b.focal_px[i]), 4 * found->focal_sigma_px[i]);
-      EXPECT_LT(std::abs(a.principal_px[i] - b.principal_px[i]), 4 * found->principal_sigma_px[i]);
-    }
-    EXPECT_LT(found->focal_sigma_px.maxCoeff(), 2);
+    expect_within_its_errors(*found, truth);
     EXPECT_TRUE(find_faults(*found, {}).empty());
   }
 }
@@ -173,18 +177,10 @@ TEST(FisheyeCalibration, FindsTheLensOfExactPoints) {
 }
 
 TEST(FisheyeCalibration, StaysWithinWhatItSaysOfItsErrors) {
-  // As of the other lenses: four standard deviations; 0.2 px per coordinate.
   const auto truth = fisheye_camera();
   const auto found = calibrate_camera(fisheye_views(truth, 0.2, 2), kSize, core::LensKind::fisheye);
   ASSERT_TRUE(found);
-  EXPECT_NEAR(found->rms_px, 0.2 * std::numbers::sqrt2, 0.02);
-  const auto& a = found->camera.intrinsics();
-  const auto& b = truth.intrinsics();
-  for (int i = 0; i < 2; ++i) {
-    EXPECT_LT(std::abs(a.focal_px[i] - b.focal_px[i]), 4 * found->focal_sigma_px[i]);
-    EXPECT_LT(std::abs(a.principal_px[i] - b.principal_px[i]), 4 * found->principal_sigma_px[i]);
-  }
-  EXPECT_LT(found->focal_sigma_px.maxCoeff(), 2);
+  expect_within_its_errors(*found, truth);
 }
 
 TEST(FisheyeCalibration, NoOtherLensFits) {

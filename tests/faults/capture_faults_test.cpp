@@ -12,9 +12,7 @@
 #include <stdlib.h>
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
-#include <thread>
 
 namespace sheen::tests {
 namespace {
@@ -49,10 +47,8 @@ class CaptureFaults : public ::testing::Test {
   ProgramRun record(const std::string& fault) {
     fs::remove_all(walk_);
     capture::test::ScriptedHttp camera({[this](capture::test::HttpConnection& client) {
-      // At a camera's pace: images that lie ready are old to the program.
       client.begin_images();
       for (std::size_t i = 0; client.send_image(sent_[i % sent_.size()]); ++i) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(20));
       }
     }});
     setenv("LD_PRELOAD", FAIL_WRITE_LIBRARY, 1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "core/diagnostics/error.h"
-#include "core/text/json_depth.h"
+#include "core/text/nesting.h"
 #include "fitting/model_file/checksum.h"
 #include "fitting/model_file/document.h"
 #include "fitting/model_file/glb.h"
@@ -278,6 +278,7 @@ TEST_F(HostileModelFile, NestedParametersAreRefused) {
   })));
   EXPECT_NE(message_.find("nests"), std::string::npos) << message_;
   EXPECT_EQ(core::json_depth(R"({"a": "[[[", "b": [{}, "\\"], "\"[": []})"), 3u);
+  EXPECT_EQ(core::bracket_depth(R"(# 12" [[[ ]]] ] {})"), 3u);
 }
 
 // The same for what the arrays hold. View 3 is the triangles, the last-but-one the coefficients.

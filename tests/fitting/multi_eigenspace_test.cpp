@@ -319,7 +319,8 @@ const std::vector<cv::Mat>& turntable_pictures() {
     photographs.observe(all, [&](const core::Observation& observation) {
       depth.draw(observation.view, observation.image.size(), observation.camera_from_object);
       made.push_back(
-          rectifier.picture(keep_view(observation, depth, 97), fitted_turntable().frame(), 64));
+          rectifier.picture(keep_view(observation, depth, 97, Surroundings::photographed),
+                            fitted_turntable().frame(), 64));
     });
     return made;
   }();

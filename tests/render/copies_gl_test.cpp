@@ -57,8 +57,7 @@ TEST_F(Copies, OneIsTheReferencesImage) {
     const auto expected = reference->render(camera(), pose);
     const auto drawn = draw(pose, {here});
     EXPECT_GT(cv::countNonZero(expected.mask), 2000);
-    // Half covered pixels of the outline fall to either side: 12 where most do.
-    EXPECT_LE(cv::countNonZero(expected.mask != drawn.mask), 30);
+    EXPECT_LE(cv::countNonZero(expected.mask != drawn.mask), 10);
     const auto difference =
         testing::difference(drawn.image, expected.image, expected.mask & drawn.mask);
     EXPECT_LT(difference.mean, 0.5);
