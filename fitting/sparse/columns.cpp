@@ -175,4 +175,98 @@ std::size_t best_gain(const float* r, const float* g, const float* b, const floa
   return static_cast<std::size_t>(where[best]);
 }
 
+namespace {
+
+constexpr std::size_t kGroupsAtOnce = 8;
+constexpr std::size_t kAtomsAtOnce = kGroupsAtOnce * kRowGroup;
+static_assert(kAtomPlaces % kAtomsAtOnce == 0 && alignof(AtomLine) % sizeof(Group) == 0);
+
+SHEEN_INLINE const Group& group(const AtomLine& line, std::size_t atom) {
+  return *reinterpret_cast<const Group*>(line.atom + atom);
+}
+
+SHEEN_INLINE Group& group(AtomLine& line, std::size_t atom) {
+  return *reinterpret_cast<Group*>(line.atom + atom);
+}
+
+}  // namespace
+
+SHEEN_FOR_EVERY_PROCESSOR
+void atom_lines(const Column& u, const Column& v, std::size_t rows, const AtomPlaces& places,
+                AtomLine* line) {
+  for (std::size_t row = 0; row < rows; ++row) {
+    float* out = line[row].atom;
+    for (std::size_t atom = 0; atom < kAtomPlaces; ++atom) {
+      const float du = u.row[row] - places.center_u.atom[atom];
+      const float dv = v.row[row] - places.center_v.atom[atom];
+      const float squared = places.per_squared_support.atom[atom] * (du * du + dv * dv);
+      const float distance = __builtin_sqrtf(squared < 1.0f ? squared : 1.0f);
+      const float rest = 1.0f - distance;
+      const float rest2 = rest * rest;
+      out[atom] = rest2 * rest2 * (4.0f * distance + 1.0f);
+    }
+  }
+}
+
+SHEEN_FOR_EVERY_PROCESSOR
+void atom_sums(const AtomLine* line, std::size_t rows, const Column* factor, AtomLine* sum) {
+  constexpr std::size_t groups = 4;  // times three sums: as many as there are registers
+  for (std::size_t atom = 0; atom < kAtomPlaces; atom += groups * kRowGroup) {
+    Group r[groups]{}, g[groups]{}, b[groups]{};
+    for (std::size_t row = 0; row < rows; ++row) {
+      for (std::size_t k = 0; k < groups; ++k) {
+        const Group value = group(line[row], atom + k * kRowGroup);
+        r[k] += value * factor[0].row[row];
+        g[k] += value * factor[1].row[row];
+        b[k] += value * factor[2].row[row];
+      }
+    }
+    for (std::size_t k = 0; k < groups; ++k) {
+      group(sum[0], atom + k * kRowGroup) = r[k];
+      group(sum[1], atom + k * kRowGroup) = g[k];
+      group(sum[2], atom + k * kRowGroup) = b[k];
+    }
+  }
+}
+
+SHEEN_FOR_EVERY_PROCESSOR
+void atom_squares(const AtomLine* line, std::size_t rows, const Column& squared_weight,
+                  AtomLine& covered, AtomLine& squared) {
+  constexpr std::size_t groups = 4;
+  for (std::size_t atom = 0; atom < kAtomPlaces; atom += groups * kRowGroup) {
+    Group first[groups]{}, second[groups]{};
+    for (std::size_t row = 0; row < rows; ++row) {
+      for (std::size_t k = 0; k < groups; ++k) {
+        const Group value = group(line[row], atom + k * kRowGroup);
+        const Group weighted = value * squared_weight.row[row];
+        first[k] += weighted;
+        second[k] += weighted * value;
+      }
+    }
+    for (std::size_t k = 0; k < groups; ++k) {
+      group(covered, atom + k * kRowGroup) = first[k];
+      group(squared, atom + k * kRowGroup) = second[k];
+    }
+  }
+}
+
+SHEEN_FOR_EVERY_PROCESSOR
+void take_away(const AtomLine* line, std::size_t rows, const Column& factor, const float* along,
+               AtomLine& remainder, AtomLine* correlation) {
+  for (std::size_t atom = 0; atom < kAtomPlaces; atom += kAtomsAtOnce) {
+    Group shared[kGroupsAtOnce]{};
+    for (std::size_t row = 0; row < rows; ++row) {
+      const float by = factor.row[row];
+      for (std::size_t k = 0; k < kGroupsAtOnce; ++k) {
+        shared[k] += group(line[row], atom + k * kRowGroup) * by;
+      }
+    }
+    for (std::size_t k = 0; k < kGroupsAtOnce; ++k) {
+      const std::size_t at = atom + k * kRowGroup;
+      group(remainder, at) -= shared[k] * shared[k];
+      for (std::size_t c = 0; c < 3; ++c) group(correlation[c], at) -= along[c] * shared[k];
+    }
+  }
+}
+
 }  // namespace sheen::fitting::sparse::columns

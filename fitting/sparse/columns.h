@@ -21,6 +21,17 @@ constexpr std::size_t padded(std::size_t rows) {
   return (rows + kRowGroup - 1) / kRowGroup * kRowGroup;
 }
 
+/// Atoms at one sample; places behind the last atom stay zero.
+inline constexpr std::size_t kAtomPlaces = 320;
+struct alignas(64) AtomLine {
+  float atom[kAtomPlaces];
+};
+
+/// Atoms' centres and 1 / support^2; where there is no atom, a centre far outside the disc.
+struct AtomPlaces {
+  AtomLine center_u, center_v, per_squared_support;
+};
+
 /// The inner loops of sparse fits. Compiled for AVX2 too where the processor has it, with the same
 /// results to the bit; `rows` is a multiple of kRowGroup.
 namespace columns {
@@ -57,6 +68,23 @@ void squared_lengths(const Column* columns, std::size_t count, std::size_t rows,
 /// multiple of kRowGroup, and the numbers are aligned like columns.
 std::size_t best_gain(const float* r, const float* g, const float* b, const float* remainder,
                       std::size_t count, float least);
+
+/// line[i].atom[k] = theta(|(u_i, v_i) - center_k| / support_k) for the first `rows` samples.
+void atom_lines(const Column& u, const Column& v, std::size_t rows, const AtomPlaces& places,
+                AtomLine* line);
+
+/// sum[c].atom[k] = sum_i factor[c].row[i] * line[i].atom[k] for the first `rows` samples, c < 3.
+void atom_sums(const AtomLine* line, std::size_t rows, const Column* factor, AtomLine* sum);
+
+/// covered.atom[k] = sum_i w_i * line[i].atom[k], squared.atom[k] = sum_i w_i * line[i].atom[k]^2,
+/// w the squared weights of the first `rows` samples.
+void atom_squares(const AtomLine* line, std::size_t rows, const Column& squared_weight,
+                  AtomLine& covered, AtomLine& squared);
+
+/// With s_k = sum_i factor.row[i] * line[i].atom[k]: remainder_k -= s_k^2 and
+/// correlation[c]_k -= along[c] * s_k, c < 3.
+void take_away(const AtomLine* line, std::size_t rows, const Column& factor, const float* along,
+               AtomLine& remainder, AtomLine* correlation);
 
 }  // namespace columns
 }  // namespace sheen::fitting::sparse

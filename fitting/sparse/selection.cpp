@@ -34,45 +34,29 @@ constexpr float kBrightestGuess = 1.5f;
 void Selection::list_candidates() {
   // Atoms that no sample touches must not divide by their ridge alone.
   constexpr float hardly_touched = 0.02f;
-  design_.evaluate_all();
-  const std::size_t rows = design_.padded_rows();
-  for (std::size_t channel = 0; channel < 3; ++channel) {
-    columns::dots(design_.atom_columns(), atoms().size(), design_.colours(channel), rows,
-                  all_candidates_.correlation[channel].data());
-  }
-  for (std::size_t atom = 0; atom < atoms().size(); ++atom) {
-    const Column& column = design_.atom_columns()[atom];
-    const float squared = columns::dot(column, column, rows);
-    all_candidates_.remainder[atom] =
-        squared < hardly_touched ? 0.0f : squared + design_.ridge(kLinearBase + atom);
+  AtomLine squared;
+  AtomLine ridge;
+  design_.measure_atoms(squared, ridge);
+  design_.atom_products(&design_.colours(0), all_candidates_.correlation.data());
+  for (std::size_t atom = 0; atom < kAtomPlaces; ++atom) {
+    all_candidates_.remainder.atom[atom] =
+        squared.atom[atom] < hardly_touched ? 0.0f : squared.atom[atom] + ridge.atom[atom];
   }
 }
 
 void Selection::follow(Candidates& candidates) const {
-  std::array<float, kMaxAtoms> shared;
-  columns::dots(design_.atom_columns(), atoms().size(), fit_.last_direction(),
-                design_.padded_rows(), shared.data());
-  const Eigen::Vector3f& projection = fit_.last_projection();
-  for (std::size_t atom = 0; atom < shared.size(); ++atom) {
-    candidates.remainder[atom] -= shared[atom] * shared[atom];
-  }
-  for (std::size_t channel = 0; channel < 3; ++channel) {
-    const float along = projection[static_cast<Eigen::Index>(channel)];
-    auto& correlation = candidates.correlation[channel];
-    for (std::size_t atom = 0; atom < shared.size(); ++atom) {
-      correlation[atom] -= along * shared[atom];
-    }
-  }
+  design_.take_away(fit_.last_direction(), fit_.last_projection(), candidates.remainder,
+                    candidates.correlation.data());
 }
 
 // Takes out the best; nothing when none is left that differs from what is there.
 std::optional<FunctionIdx> Selection::take_best(Candidates& candidates) {
   constexpr float smallest_remainder = 1e-4f;
   const auto& [r, g, b] = candidates.correlation;
-  const std::size_t atom = columns::best_gain(
-      r.data(), g.data(), b.data(), candidates.remainder.data(), kMaxAtoms, smallest_remainder);
+  const std::size_t atom = columns::best_gain(r.atom, g.atom, b.atom, candidates.remainder.atom,
+                                              kMaxAtoms, smallest_remainder);
   if (atom == kMaxAtoms) return std::nullopt;
-  candidates.remainder[atom] = 0.0f;
+  candidates.remainder.atom[atom] = 0.0f;
   return kLinearBase + atom;
 }
 
@@ -110,6 +94,7 @@ Selection::Scored Selection::grown(std::size_t base_terms) {
   while (in_vain <= kPatience && fit_.terms().rbf_count() < kMaxRbfs) {
     const auto rbf = take_best(candidates);
     if (!rbf) break;
+    design_.evaluate(*rbf);
     if (!fit_.push(design_, *rbf)) continue;
     follow(candidates);
     ++fits_;
@@ -136,7 +121,8 @@ Selection::Scored Selection::pruned(Scored best) {
 }
 
 void Selection::fit(const TermList& terms) {
-  if (fit_is_current_ && fit_.terms() == terms) return;
+  // The first of the terms that are there need not be added again.
+  if (fit_is_current_ && fit_.terms().begins_with(terms)) return fit_.shorten(terms.count);
   fit_.build(design_, terms);
   fit_is_current_ = true;
 }

@@ -32,7 +32,7 @@ struct SelectedModel {
 /// with GCV = mean r^2 / (1 - df / n)^2, n the weight of the samples, and three numbers for a term
 /// and three more for the choice of its atom. The criterion_weight grows with n to its nominal
 /// value: with a dozen samples a term that is wrong costs little and one that is missing much.
-/// Holds the workspace (about 190 KB): one per thread.
+/// Holds the workspace (about 350 KB): one per thread.
 class Selection {
  public:
   /// The options' tolerance may be changed later.
@@ -61,8 +61,8 @@ class Selection {
   /// of it, and s its product with the residual, adding it lowers the penalised error by |s|^2 / d.
   /// Both follow each new direction without a pass over the earlier ones.
   struct Candidates {
-    alignas(64) std::array<float, kMaxAtoms> remainder;  ///< d; 0 for what cannot be chosen
-    alignas(64) std::array<std::array<float, kMaxAtoms>, 3> correlation;  ///< s, by channel
+    AtomLine remainder;                   ///< d; 0 for what cannot be chosen
+    std::array<AtomLine, 3> correlation;  ///< s, by channel
   };
 
   [[nodiscard]] float generalised_error(const StepwiseFit& fit) const;

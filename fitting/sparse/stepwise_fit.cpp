@@ -24,6 +24,24 @@ struct Ridge {
 };
 constexpr Ridge kRidge;
 
+const AtomPlaces& places_of_atoms() {
+  static const AtomPlaces all = [] {
+    constexpr float far_outside = 8.0f;
+    AtomPlaces places;
+    std::fill_n(places.center_u.atom, kAtomPlaces, far_outside);
+    std::fill_n(places.center_v.atom, kAtomPlaces, far_outside);
+    std::fill_n(places.per_squared_support.atom, kAtomPlaces, 1.0f);
+    for (std::size_t k = 0; k < atoms().size(); ++k) {
+      const Atom& atom = atoms()[k];
+      places.center_u.atom[k] = atom.center.x();
+      places.center_v.atom[k] = atom.center.y();
+      places.per_squared_support.atom[k] = 1.0f / (atom.support * atom.support);
+    }
+    return places;
+  }();
+  return all;
+}
+
 }  // namespace
 
 void TermList::erase(std::size_t position) {
@@ -42,6 +60,11 @@ bool TermList::holds(FunctionIdx idx) const {
 bool TermList::operator==(const TermList& other) const {
   return std::equal(function.data(), function.data() + count, other.function.data(),
                     other.function.data() + other.count);
+}
+
+bool TermList::begins_with(const TermList& first) const {
+  return first.count <= count &&
+         std::equal(first.function.data(), first.function.data() + first.count, function.data());
 }
 
 TermList TermList::base(std::size_t base_terms) {
@@ -69,9 +92,14 @@ void Design::set_ridge(FunctionIdx idx) {
   if (idx < kLinearBase) {
     ridge_[idx] = idx == 0 ? 0.0f : kRidge.slope + kRidge.slope_growth * growth * total_weight_;
   } else {
-    const float covered = columns::dot(functions_[idx], root_weight_, padded_rows());
-    ridge_[idx] = kRidge.rbf + kRidge.rbf_growth * growth * covered;
+    ridge_[idx] = ridge_of_atom(columns::dot(functions_[idx], root_weight_, padded_rows()));
   }
+}
+
+/// `covered`: weight under the atom.
+float Design::ridge_of_atom(float covered) const {
+  const float growth = total_weight_ / (total_weight_ + kRidge.onset);
+  return kRidge.rbf + kRidge.rbf_growth * growth * covered;
 }
 
 void Design::set_ridge() {
@@ -107,6 +135,7 @@ void Design::load(std::span<const DirectedColour> samples) {
     functions_[2].row[row] = weight * v;
     functions_[3].row[row] = weight * std::sqrt(std::max(0.0f, 1.0f - u * u - v * v));
   }
+  has_lines_ = false;
   evaluated_.reset();
   for (FunctionIdx idx = 0; idx < kLinearBase; ++idx) evaluated_.set(idx);
   set_ridge();
@@ -125,9 +154,34 @@ void Design::evaluate(const TermList& terms) {
   for (std::size_t i = 0; i < terms.count; ++i) evaluate(terms.function[i]);
 }
 
-void Design::evaluate_all() {
-  const std::size_t count = kLinearBase + atoms().size();
-  for (FunctionIdx idx = kLinearBase; idx < count; ++idx) evaluate(idx);
+void Design::measure_atoms(AtomLine& squared, AtomLine& ridge) {
+  if (!has_lines_) columns::atom_lines(u_, v_, rows_, places_of_atoms(), lines_.get());
+  has_lines_ = true;
+  Column squared_weight;
+  for (std::size_t row = 0; row < rows_; ++row) {
+    squared_weight.row[row] = root_weight_.row[row] * root_weight_.row[row];
+  }
+  columns::atom_squares(lines_.get(), rows_, squared_weight, ridge, squared);
+  for (float& each : ridge.atom) each = ridge_of_atom(each);
+}
+
+void Design::atom_products(const Column* of, AtomLine* sum) const {
+  std::array<Column, 3> factor;
+  for (std::size_t c = 0; c < factor.size(); ++c) {
+    for (std::size_t row = 0; row < rows_; ++row) {
+      factor[c].row[row] = root_weight_.row[row] * of[c].row[row];
+    }
+  }
+  columns::atom_sums(lines_.get(), rows_, factor.data(), sum);
+}
+
+void Design::take_away(const Column& direction, const Eigen::Vector3f& along, AtomLine& remainder,
+                       AtomLine* correlation) const {
+  Column factor;
+  for (std::size_t row = 0; row < rows_; ++row) {
+    factor.row[row] = root_weight_.row[row] * direction.row[row];
+  }
+  columns::take_away(lines_.get(), rows_, factor, along.data(), remainder, correlation);
 }
 
 void Design::reweigh(std::span<const float> factor) {
@@ -197,6 +251,25 @@ bool StepwiseFit::push(const Design& design, FunctionIdx idx) {
   degrees_of_freedom_ += columns::dot(direction, direction, rows_);
   terms_.push(idx);
   return true;
+}
+
+void StepwiseFit::shorten(std::size_t count) {
+  assert(count >= 1);
+  if (count >= terms_.count) return;
+  for (std::size_t k = count; k < terms_.count; ++k) {
+    degrees_of_freedom_ -= columns::dot(directions_[k], directions_[k], rows_);
+  }
+  squared_error_ = 0;
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    std::array<float, kMaxTerms> back;
+    for (std::size_t k = count; k < terms_.count; ++k) {
+      back[k] = -projections_[k][static_cast<Eigen::Index>(channel)];
+    }
+    columns::subtract(&directions_[count], terms_.count - count, &back[count], rows_,
+                      residuals_[channel]);
+    squared_error_ += columns::dot(residuals_[channel], residuals_[channel], rows_) / 3.0f;
+  }
+  terms_.count = count;
 }
 
 void StepwiseFit::build(const Design& design, const TermList& terms) {

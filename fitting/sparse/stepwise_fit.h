@@ -32,6 +32,7 @@ struct TermList {
   void erase(std::size_t position);
   [[nodiscard]] bool holds(FunctionIdx idx) const;
   [[nodiscard]] bool operator==(const TermList& other) const;
+  [[nodiscard]] bool begins_with(const TermList& first) const;
   [[nodiscard]] std::size_t base_terms() const {
     return count > 1 && function[1] == 1 ? kLinearBase : kConstantBase;
   }
@@ -54,7 +55,15 @@ class Design {
   /// Makes functions ready for use.
   void evaluate(FunctionIdx idx);
   void evaluate(const TermList& terms);
-  void evaluate_all();
+
+  /// Every atom's squared length at the samples and its ridge, to choose among all of them.
+  void measure_atoms(AtomLine& squared, AtomLine& ridge);
+  /// sum[c] = products of all atoms with three row-scaled columns; after `measure_atoms`.
+  void atom_products(const Column* columns, AtomLine* sum) const;
+  /// With s the products of all atoms with a row-scaled column: takes s^2 from the remainder and
+  /// along[c] * s from the correlations, c < 3; after `measure_atoms`.
+  void take_away(const Column& direction, const Eigen::Vector3f& along, AtomLine& remainder,
+                 AtomLine* correlation) const;
 
   /// Multiplies the weight of every sample, in (0, 1].
   void reweigh(std::span<const float> factor);
@@ -71,8 +80,6 @@ class Design {
     assert(evaluated_[idx]);
     return functions_[idx];
   }
-  /// All atoms, in order of their ids; after `evaluate_all`.
-  [[nodiscard]] const Column* atom_columns() const { return &functions_[kLinearBase]; }
   [[nodiscard]] const Column& colours(std::size_t channel) const { return colours_[channel]; }
   [[nodiscard]] float root_weight(std::size_t sample_idx) const {
     return root_weight_.row[sample_idx];
@@ -82,11 +89,14 @@ class Design {
   void weigh();
   void set_ridge();
   void set_ridge(FunctionIdx idx);
+  [[nodiscard]] float ridge_of_atom(float covered) const;
 
   std::size_t rows_ = 0;
   float total_weight_ = 0;
   std::unique_ptr<Column[]> functions_ = std::make_unique<Column[]>(kMaxFunctions);
   std::bitset<kMaxFunctions> evaluated_;
+  std::unique_ptr<AtomLine[]> lines_ = std::make_unique<AtomLine[]>(kColumnRows);  // unweighted
+  bool has_lines_ = false;
   Column u_, v_;  // far outside the disc behind the last sample
   Column root_weight_;
   std::array<Column, 3> colours_;
@@ -103,6 +113,8 @@ class StepwiseFit {
   /// Adds a function; false (and nothing changed) when it is zero at the samples or hardly differs
   /// from what is there.
   bool push(const Design& design, FunctionIdx idx);
+  /// Takes back all but the first `count` terms, at least one.
+  void shorten(std::size_t count);
   /// Starts again and adds all, leaving out what `push` refuses.
   void build(const Design& design, const TermList& terms);
 
