@@ -5,9 +5,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
+#include <vector>
 
 namespace sheen::fitting::sparse {
 namespace {
@@ -106,6 +108,73 @@ TEST(SparseColumns, ProductsAndDifferencesAreThoseOfPlainLoops) {
 
 // Numbers that are often equal, so that the first of several greatest has to be found; a third of
 // the remainders say that there is nothing to gain.
+/// Three atoms, two groups apart, and the lines that they have at scattered directions.
+struct Lines {
+  static constexpr std::array<std::size_t, 3> kAtoms{0, 17, kAtomPlaces - 1};
+  Directions at{7};
+  AtomPlaces places{};
+  std::vector<AtomLine> line{kSamples};
+  Lines() {
+    std::fill_n(places.center_u.atom, kAtomPlaces, 8.0f);
+    std::fill_n(places.per_squared_support.atom, kAtomPlaces, 1.0f);
+    for (const std::size_t k : kAtoms) {
+      places.center_u.atom[k] = 0.1f * static_cast<float>(k % 7) - 0.3f;
+      places.center_v.atom[k] = 0.2f;
+      places.per_squared_support.atom[k] = 1.0f / (0.7f * 0.7f);
+    }
+    columns::atom_lines(at.u, at.v, kSamples, places, line.data());
+  }
+};
+
+TEST(SparseColumns, AtomLinesHoldWhatColumnsHold) {
+  const Lines lines;
+  Column one{};
+  for (std::size_t row = 0; row < kSamples; ++row) one.row[row] = 1.0f;
+  for (const std::size_t k : Lines::kAtoms) {
+    Column rbf;
+    columns::wendland(lines.at.u, lines.at.v, one, kRows, lines.places.center_u.atom[k],
+                      lines.places.center_v.atom[k], 0.7f, rbf);
+    for (std::size_t row = 0; row < kSamples; ++row) {
+      EXPECT_NEAR(lines.line[row].atom[k], rbf.row[row], kRounding);
+    }
+  }
+  // Where there is no atom nothing is seen of it.
+  for (const AtomLine& line : lines.line) EXPECT_EQ(line.atom[1], 0.0f);
+}
+
+TEST(SparseColumns, SumsOverAtomLinesAreThoseOfPlainLoops) {
+  const Lines lines;
+  std::mt19937 random(8);
+  const std::array<Column, 3> factor{random_column(random), random_column(random),
+                                     random_column(random)};
+  std::array<AtomLine, 3> sum;
+  AtomLine covered;
+  AtomLine squared;
+  columns::atom_sums(lines.line.data(), kSamples, factor.data(), sum.data());
+  columns::atom_squares(lines.line.data(), kSamples, factor[0], covered, squared);
+  AtomLine remainder{};
+  std::array<AtomLine, 3> correlation{};
+  const std::array<float, 3> along{1.0f, -2.0f, 0.5f};
+  columns::take_away(lines.line.data(), kSamples, factor[0], along.data(), remainder,
+                     correlation.data());
+  for (const std::size_t k : Lines::kAtoms) {
+    std::array<float, 3> expected{};
+    float expected_squared = 0;
+    for (std::size_t row = 0; row < kSamples; ++row) {
+      const float value = lines.line[row].atom[k];
+      for (std::size_t c = 0; c < 3; ++c) expected[c] += factor[c].row[row] * value;
+      expected_squared += factor[0].row[row] * value * value;
+    }
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(sum[c].atom[k], expected[c], kRounding);
+      EXPECT_NEAR(correlation[c].atom[k], -along[c] * expected[0], 2 * kRounding);
+    }
+    EXPECT_NEAR(covered.atom[k], expected[0], kRounding);
+    EXPECT_NEAR(squared.atom[k], expected_squared, kRounding);
+    EXPECT_NEAR(remainder.atom[k], -expected[0] * expected[0], 10 * kRounding);
+  }
+}
+
 TEST(SparseColumns, TheBestGainIsTheFirstOfTheGreatest) {
   constexpr std::size_t count = 40;
   constexpr float least = 0.5f;
