@@ -35,6 +35,10 @@ void check_headers(const std::filesystem::path& path, const ImageFacts& facts) {
   if (const auto kind = unreadable_kind(facts.kind)) {
     throw core::bad_input(path, "is " + kind->name + ", which is not read", kind->remedy);
   }
+  // OpenCV would look for a decoder among many, and DICOM's ends the program over a damaged file.
+  if (facts.kind == ImageKind::unknown) {
+    throw unreadable(path, "is no JPEG, PNG, TIFF, BMP or WebP");
+  }
   if (facts.kind == ImageKind::jpeg && facts.channels == 4) {
     throw core::bad_input(path, "has CMYK colours, as for print", "convert it to RGB");
   }
