@@ -90,16 +90,16 @@ class Comparison:
         if refusal:
             return f"| {name} | - | refused | {self.psnr(self.truth):.2f} | | | | | |\n\n{refusal}"
         meshes = {"own": self.folder / "own.ply", "true": self.truth}
-        counts = {name: self.decimated(mesh, 0, self.folder / "same.ply") for name, mesh in meshes.items()}
-        full = {name: self.psnr(mesh) for name, mesh in meshes.items()}
+        counts = {which: self.decimated(mesh, 0, self.folder / "same.ply") for which, mesh in meshes.items()}
+        full = {which: self.psnr(mesh) for which, mesh in meshes.items()}
         fewest = min(counts.values())
         equal = {}
-        for name, mesh in meshes.items():
-            if counts[name] == fewest:
-                equal[name] = full[name]
+        for which, mesh in meshes.items():
+            if counts[which] == fewest:
+                equal[which] = full[which]
                 continue
             reached = self.decimated(mesh, fewest, self.folder / "equal.ply")
-            equal[name] = self.psnr(self.folder / "equal.ply")
+            equal[which] = self.psnr(self.folder / "equal.ply")
             fewest = max(fewest, reached)
         return (f"| {name} | {counts['own']} / {counts['true']} | {full['own']:.2f} | {full['true']:.2f} "
                 f"| {fewest} | {equal['own']:.2f} | {equal['true']:.2f} | {equal['true'] - equal['own']:+.2f} | {seconds:.0f} |")
