@@ -166,8 +166,7 @@ void FrameBaker::resolve(const cv::Point& pixel, float radius_m, cv::Vec3b& colo
         pixel.x * samples_;
     for (int x = 0; x < samples_; ++x) {
       if (!row[x].object()) continue;
-      const WeightedColour sums =
-          colours_->at(row[x].point, pixel * samples_ + cv::Point(x, y));
+      const WeightedColour sums = colours_->at(row[x].point, pixel * samples_ + cv::Point(x, y));
       rgb += sums.colour().cwiseMax(0.0f).cwiseMin(1.0f);
       nearest = std::max(nearest, row[x].z);
       supported = supported || sums.weight_sum > 2 * kUnseenWeight;
@@ -199,8 +198,8 @@ void bake_all(const core::Mesh& mesh, const std::vector<core::TangentFrame>& fra
       [&](std::size_t begin, std::size_t end) {
         FrameBaker baker(mesh, frames, patches, kFrameSamples);
         for (std::size_t i = begin; i < end; ++i) {
-          billboards.set_frame(i, encode(baker.bake(billboards.camera(i)),
-                                         billboards.options().views.quality));
+          billboards.set_frame(
+              i, encode(baker.bake(billboards.camera(i)), billboards.options().views.quality));
         }
       },
       1);

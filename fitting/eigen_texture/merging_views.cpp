@@ -66,8 +66,7 @@ void MergingViews::merge_nearest() {
   const float count = counts_[first] + counts_[second];
   const float share = counts_[second] / count;
   texels_[first] = merged(texels_[first], texels_[second], share);
-  const Eigen::Vector3f between =
-      (1.0f - share) * directions_[first] + share * directions_[second];
+  const Eigen::Vector3f between = (1.0f - share) * directions_[first] + share * directions_[second];
   // Opposite ones have nothing between them.
   if (between.norm() > 1e-3f) directions_[first] = between.normalized();
   counts_[first] = count;

@@ -40,11 +40,10 @@ Eigen::Vector2f RayGrid::at(double x_px, double y_px) const {
   const auto u = static_cast<float>(x - column);
   const auto v = static_cast<float>(y - row);
   const Eigen::Vector2f* const upper =
-      nodes_.data() +
-      static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + column;
+      nodes_.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + column;
   const Eigen::Vector2f* const lower = upper + columns_;
-  const Eigen::Vector2f ray = (1 - v) * ((1 - u) * upper[0] + u * upper[1]) +
-                              v * ((1 - u) * lower[0] + u * lower[1]);
+  const Eigen::Vector2f ray =
+      (1 - v) * ((1 - u) * upper[0] + u * upper[1]) + v * ((1 - u) * lower[0] + u * lower[1]);
   return ray.allFinite() ? ray : exact(x_px, y_px);
 }
 

@@ -84,8 +84,8 @@ SeenTexel grey_texel(std::uint32_t slot, int grey, int weight) {
   return {slot, {value, value, value}, static_cast<std::uint8_t>(weight)};
 }
 
-// Slots 1 and 3 are shown by one view each and stay. Slot 2 by both, the second made of three views:
-// weight (200 + 3 * 40) / 4 = 80, grey (200 * 100 + 120 * 180) / 320 = 130.
+// Slots 1 and 3 are shown by one view each and stay. Slot 2 by both, the second made of three
+// views: weight (200 + 3 * 40) / 4 = 80, grey (200 * 100 + 120 * 180) / 320 = 130.
 TEST(MergingViews, TexelsBecomeMeansOfWhatTheyWereMadeOf) {
   const auto both = merged({grey_texel(1, 10, 255), grey_texel(2, 100, 200)},
                            {grey_texel(2, 180, 40), grey_texel(3, 30, 7)}, 0.75f);
