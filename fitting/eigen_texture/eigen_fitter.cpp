@@ -5,7 +5,7 @@
 #include "fitting/detail/weighted_mean.h"
 #include "fitting/eigen_texture/batch_fit.h"
 #include "fitting/eigen_texture/eigen_texture.h"
-#include "fitting/eigen_texture/merging_views.h"
+#include "fitting/eigen_texture/incremental_fit.h"
 #include "fitting/eigen_texture/texel_reader.h"
 #include "fitting/kept_views/mean_keeper.h"
 
@@ -13,16 +13,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 #include <utility>
 
 namespace sheen::fitting::eigen_texture {
 namespace {
 
-/// That the incremental fit keeps: of 512 x 512 texels, half of them seen, 40 MB.
-constexpr std::size_t kMostKept = 64;
-/// Its bases are found anew after so many views, then whenever there are half as many again.
-constexpr std::size_t kFirstBases = 8;
+/// An update costs about the same for one view and for a few.
+constexpr std::size_t kViewsAtOnce = 8;
 /// Part of an atlas that charts fill, about.
 constexpr float kFilled = 0.6f;
 
@@ -51,8 +49,11 @@ class EigenFitter final : public Fitter {
         vertex_means_(mesh, threads),
         model_(mesh, atlas_of(mesh, options)),
         reader_(mesh, model_.mean().atlas(), threads),
-        means_(reader_.used().size()),
-        views_(is_incremental() ? kMostKept : std::numeric_limits<std::size_t>::max()) {}
+        means_(reader_.used().size()) {
+    if (options.solve == Solve::incremental) {
+      incremental_.emplace(reader_.used().size(), static_cast<std::size_t>(options.bases), threads);
+    }
+  }
 
   const ModelUpdate& integrate(const core::Observation& observation) override {
     vertex_means_.integrate(observation);
@@ -65,13 +66,9 @@ class EigenFitter final : public Fitter {
           texel.squared_cosine());
       store_mean(texel.slot);
     }
-    views_.add(std::move(seen),
-               model_.direction_to(core::eye_in_object(observation.camera_from_object)));
-    ++integrated_;
-    if (is_incremental() && integrated_ == next_bases_) {
-      find_bases();
-      next_bases_ += next_bases_ / 2;
-    }
+    directions_.push_back(model_.direction_to(core::eye_in_object(observation.camera_from_object)));
+    views_.push_back(std::move(seen));
+    if (incremental_ && views_.size() == kViewsAtOnce) grow();
     update_.elements = {0};
     return update_;
   }
@@ -80,7 +77,13 @@ class EigenFitter final : public Fitter {
     vertex_means_.finish();
     model_.set_vertex_means(vertex_means_.means());
     fill_unseen();
-    find_bases();
+    if (incremental_) {
+      grow();
+    } else {
+      model_.set_bases(
+          fit_bases(views_, used_means(), static_cast<std::size_t>(options_.bases), threads_),
+          directions_);
+    }
     update_.elements = {0};
     return update_;
   }
@@ -95,12 +98,11 @@ class EigenFitter final : public Fitter {
     return means;
   }
 
-  [[nodiscard]] bool is_incremental() const { return options_.solve == Solve::incremental; }
-
-  void find_bases() {
-    model_.set_bases(fit_bases(views_.texels(), used_means(),
-                               static_cast<std::size_t>(options_.bases), threads_),
-                     views_.directions());
+  /// Takes the views that wait into the bases.
+  void grow() {
+    incremental_->add(views_, used_means());
+    views_.clear();
+    model_.set_bases(incremental_->channels(), directions_);
   }
 
   void store_mean(std::size_t slot) {
@@ -141,9 +143,9 @@ class EigenFitter final : public Fitter {
   EigenTexture model_;
   TexelReader reader_;
   std::vector<detail::WeightedMean> means_;
-  MergingViews views_;
-  std::size_t integrated_ = 0;
-  std::size_t next_bases_ = kFirstBases;
+  std::optional<IncrementalFit> incremental_;
+  std::vector<std::vector<SeenTexel>> views_;  ///< all, or those that wait for the incremental fit
+  std::vector<Eigen::Vector3f> directions_;
   ModelUpdate update_;
 };
 

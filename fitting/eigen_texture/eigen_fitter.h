@@ -10,9 +10,9 @@
 namespace sheen::fitting::eigen_texture {
 
 /// The mean texture while views arrive, its bases in `finish` (batch_fit.h), which takes 8 bytes
-/// per texel and view that saw it; or bases, too, while views arrive, from at most 64 views:
-/// further ones are merged with their neighbours (merging_views.h). `mesh` outlives it; `threads`
-/// >= 1. Throws std::invalid_argument for bad options.
+/// per texel and view that saw it; or bases, too, while views arrive (incremental_fit.h), whose
+/// memory does not grow with the views. `mesh` outlives it; `threads` >= 1. Throws
+/// std::invalid_argument for bad options.
 std::unique_ptr<Fitter> make_eigen_fitter(const core::Mesh& mesh, const Options& options,
                                           int threads);
 

@@ -10,7 +10,7 @@ namespace sheen::fitting::eigen_texture {
 /// When the bases are found.
 enum class Solve {
   batch,       ///< at the end, from all views
-  incremental  ///< while views arrive, too, from a bounded number of them
+  incremental  ///< while views arrive, each looked at once
 };
 
 struct Options {

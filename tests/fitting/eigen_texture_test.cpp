@@ -4,7 +4,7 @@
 
 #include "fitting/descriptor.h"
 #include "fitting/eigen_texture/factors.h"
-#include "fitting/eigen_texture/merging_views.h"
+#include "fitting/eigen_texture/incremental_fit.h"
 #include "render/context/context.h"
 #include "render/eigen_texture/blend_kernels.h"
 #include "render/eigen_texture/eigen_paint.h"
@@ -77,45 +77,46 @@ TEST(Factors, BasesGoToTheChannelThatGainsMost) {
   EXPECT_EQ(give_out_bases(channels, 9), (Given{4, 1, 0}));
 }
 
-// ---- views kept while they arrive ----
-
-SeenTexel grey_texel(std::uint32_t slot, int grey, int weight) {
-  const auto value = static_cast<std::uint8_t>(grey);
-  return {slot, {value, value, value}, static_cast<std::uint8_t>(weight)};
-}
-
-// Slots 1 and 3 are shown by one view each and stay. Slot 2 by both, the second made of three
-// views: weight (200 + 3 * 40) / 4 = 80, grey (200 * 100 + 120 * 180) / 320 = 130.
-TEST(MergingViews, TexelsBecomeMeansOfWhatTheyWereMadeOf) {
-  const auto both = merged({grey_texel(1, 10, 255), grey_texel(2, 100, 200)},
-                           {grey_texel(2, 180, 40), grey_texel(3, 30, 7)}, 0.75f);
-  ASSERT_EQ(both.size(), 3u);
-  const std::array expected{grey_texel(1, 10, 255), grey_texel(2, 130, 80), grey_texel(3, 30, 7)};
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(both[i].slot, expected[i].slot);
-    EXPECT_EQ(both[i].rgb, expected[i].rgb);
-    EXPECT_EQ(both[i].weight, expected[i].weight);
+// As long as there are bases for all views nothing is lost, whatever the mean does meanwhile: grey
+// textures of 24 views, taken in four at a time, come back but for the rounding of bases (a 254th
+// of the largest deviation, times a coefficient of about 1) and coefficients.
+TEST(IncrementalFit, IsExactWhileBasesLast) {
+  constexpr int texels = 500, views = 24;
+  const MatrixXf truth =
+      (random_matrix(texels, 4, 1) * random_matrix(4, views, 2) * 12.0f).array() + 128.0f;
+  IncrementalFit fit(texels, 30, 1);
+  std::vector<Texel> mean(texels);
+  std::vector<std::vector<SeenTexel>> waiting;
+  for (int v = 0; v < views; ++v) {
+    std::vector<SeenTexel> view;
+    for (int i = 0; i < texels; ++i) {
+      const auto grey = cv::saturate_cast<std::uint8_t>(truth(i, v));
+      view.push_back({static_cast<std::uint32_t>(i), {grey, grey, grey}, 255});
+      const auto middle = cv::saturate_cast<std::uint8_t>(truth.row(i).head(v + 1).mean());
+      mean[static_cast<std::size_t>(i)] = {middle, middle, middle};
+    }
+    waiting.push_back(std::move(view));
+    if (waiting.size() == 4) {
+      fit.add(waiting, mean);
+      waiting.clear();
+    }
   }
-}
-
-// A thousand views along a half circle, 20 kept: 9 degrees each, none of more than twice that.
-TEST(MergingViews, AreBoundedAndSpreadOverTheDirections) {
-  MergingViews views(20);
-  for (int i = 0; i < 1000; ++i) {
-    const float angle = static_cast<float>(M_PI) * (static_cast<float>(i) + 0.5f) / 1000;
-    views.add({grey_texel(0, 128, 255)}, {std::cos(angle), std::sin(angle), 0});
-    ASSERT_LE(views.texels().size(), 20u);
+  const Channel luma = fit.channels()[0];
+  EXPECT_EQ(fit.channels()[1].bases, 0u);
+  float largest = 0;
+  for (int v = 0; v < views; ++v) {
+    for (int i = 0; i < texels; ++i) {
+      float grey = mean[static_cast<std::size_t>(i)][0];
+      for (std::size_t k = 0; k < luma.bases; ++k) {
+        grey +=
+            static_cast<float>(luma.coefficients[static_cast<std::size_t>(v) * luma.bases + k]) *
+            static_cast<float>(luma.texels[k * texels + static_cast<std::size_t>(i)]);
+      }
+      const float shown = cv::saturate_cast<std::uint8_t>(truth(i, v));
+      largest = std::max(largest, std::abs(grey - shown));
+    }
   }
-  ASSERT_EQ(views.directions().size(), 20u);
-  std::vector<float> angles;
-  for (const auto& one : views.directions()) {
-    EXPECT_NEAR(one.norm(), 1.0f, 1e-5f);
-    angles.push_back(std::atan2(one.y(), one.x()));
-  }
-  std::ranges::sort(angles);
-  for (std::size_t i = 1; i < angles.size(); ++i) {
-    EXPECT_LT((angles[i] - angles[i - 1]) * 180 / static_cast<float>(M_PI), 18);
-  }
+  EXPECT_LT(largest, 2.0f);
 }
 
 // ---- kernels ----
@@ -246,31 +247,15 @@ TEST(EigenTexture, ErrorFallsWithBasesToTheFloor) {
   EXPECT_LT(unseen_error[2], 0.5 * unseen_error[0]);
 }
 
-// Until there are more views than are kept, the incremental fit is the batch fit, to the bit.
-TEST(EigenTexture, IncrementalIsBatchWhileAllViewsAreKept) {
-  const auto photographs = cap_of_photographs(30, 0);
-  const auto batch = fitted(photographs, views_from(0, 30), "12");
-  const auto live = fitted(photographs, views_from(0, 30), "12", "incremental");
-  const auto& expected = dynamic_cast<const EigenTexture&>(batch->light_field());
-  const auto& found = dynamic_cast<const EigenTexture&>(live->light_field());
-  EXPECT_EQ(found.directions(), expected.directions());
-  EXPECT_EQ(found.mean().texels(), expected.mean().texels());
-  for (std::size_t c = 0; c < 3; ++c) {
-    EXPECT_EQ(found.channels()[c].texels, expected.channels()[c].texels);
-    EXPECT_EQ(found.channels()[c].coefficients, expected.channels()[c].coefficients);
-  }
-}
-
-// Of 120 views 64 are kept: .3 dB are a factor of 1.035.
+// Each view looked at once loses little: .3 dB are a factor of 1.035.
 TEST(EigenTexture, IncrementalIsNearlyAsGoodAsBatch) {
-  constexpr int held_out = 6, views = 120;
+  constexpr int held_out = 6, views = 40;
   const auto photographs = cap_of_photographs(views, held_out);
   const auto seen = views_from(held_out, held_out + views);
   const auto unseen = views_from(0, held_out);
   const double batch = error_of(photographs, *fitted(photographs, seen, "30"), unseen);
-  const auto fitter = fitted(photographs, seen, "30", "incremental");
-  EXPECT_EQ(dynamic_cast<const EigenTexture&>(fitter->light_field()).directions().size(), 64u);
-  const double live = error_of(photographs, *fitter, unseen);
+  const double live =
+      error_of(photographs, *fitted(photographs, seen, "30", "incremental"), unseen);
   std::printf("batch %.3f, incremental %.3f\n", batch, live);
   RecordProperty("batch", std::to_string(batch));
   RecordProperty("incremental", std::to_string(live));
