@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include "app/commands/bake.h"
 #include "app/commands/batch.h"
 #include "app/commands/board.h"
 #include "app/commands/calibrate.h"
@@ -77,6 +78,7 @@ int main(int argc, char** argv) {
   app::add_render_command(program, context);
   app::add_evaluate_command(program, context);
   app::add_export_command(program, context);
+  app::add_bake_command(program, context);
   app::add_compare_command(program, context);
   app::add_batch_command(program, context);
   app::add_synth_command(program, context);

@@ -19,6 +19,8 @@ struct MeshFile {
   std::vector<Eigen::Vector3d> positions;  ///< as the file says
   /// Empty where the file has none, else one for every position, zero where it is missing.
   std::vector<Eigen::Vector3f> normals;
+  /// sRGB in [0, 1], one for every position; empty where the file has none, or is no PLY.
+  std::vector<Eigen::Vector3f> colours;
   std::vector<Eigen::Matrix<std::uint32_t, 3, 1>> triangles;
   std::vector<std::string> notes;  ///< what was passed over or is doubtful, without the file's name
 };

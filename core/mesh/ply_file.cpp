@@ -22,9 +22,10 @@
 namespace sheen::core {
 namespace {
 
-/// Where a vertex property belongs: 0-2 position, 3-5 normal, 6 elsewhere.
+/// Where a vertex property belongs: 0-2 position, 3-5 normal, 6-8 colour, 9 elsewhere.
 std::size_t slot_of(const PlyProperty& property) {
-  constexpr std::array<std::string_view, 6> names = {"x", "y", "z", "nx", "ny", "nz"};
+  constexpr std::array<std::string_view, 9> names = {"x",  "y",   "z",     "nx",  "ny",
+                                                     "nz", "red", "green", "blue"};
   if (property.count) return names.size();
   return static_cast<std::size_t>(std::find(names.begin(), names.end(), property.name) -
                                   names.begin());
@@ -57,14 +58,40 @@ void check_coordinates(const PlyElement& element, const std::filesystem::path& p
   }
 }
 
+/// What white is in numbers of this type.
+double white_of(PlyScalar type) {
+  switch (type) {
+    case PlyScalar::float32:
+    case PlyScalar::float64:
+      return 1;
+    case PlyScalar::int16:
+    case PlyScalar::uint16:
+      return 65535;
+    default:
+      return 255;
+  }
+}
+
+/// Within what a display shows; black for what is no number.
+Eigen::Vector3f displayed(const std::array<double, 3>& rgb) {
+  Eigen::Vector3f colour;
+  for (std::size_t c = 0; c < 3; ++c) {
+    colour[static_cast<Eigen::Index>(c)] =
+        static_cast<float>(rgb[c] > 0 ? std::min(rgb[c], 1.0) : 0.0);
+  }
+  return colour;
+}
+
 void read_vertices(PlyBody& body, const PlyElement& element, MeshFile& mesh) {
   std::vector<std::size_t> slots;
   for (const PlyProperty& property : element.properties) slots.push_back(slot_of(property));
   const bool has_normals =
       has_property(element, "nx") && has_property(element, "ny") && has_property(element, "nz");
+  const bool has_colours = has_property(element, "red") && has_property(element, "green") &&
+                           has_property(element, "blue");
   mesh.positions.reserve(element.rows);
   for (std::size_t row = 0; row < element.rows; ++row) {
-    std::array<double, 7> values{};
+    std::array<double, 10> values{};
     for (std::size_t p = 0; p < slots.size(); ++p) {
       const PlyProperty& property = element.properties[p];
       if (property.count) {
@@ -72,12 +99,14 @@ void read_vertices(PlyBody& body, const PlyElement& element, MeshFile& mesh) {
         continue;
       }
       values[slots[p]] = body.next(property.type);
+      if (slots[p] >= 6) values[slots[p]] /= white_of(property.type);
     }
     mesh.positions.emplace_back(values[0], values[1], values[2]);
     if (has_normals) {
       mesh.normals.emplace_back(static_cast<float>(values[3]), static_cast<float>(values[4]),
                                 static_cast<float>(values[5]));
     }
+    if (has_colours) mesh.colours.push_back(displayed({values[6], values[7], values[8]}));
   }
 }
 

@@ -171,11 +171,13 @@ void judge_normals(Mesh& mesh, std::vector<std::string>& notes) {
 
 }  // namespace
 
-Mesh read_mesh(const std::filesystem::path& path, std::vector<std::string>* notes) {
+Mesh read_mesh(const std::filesystem::path& path, std::vector<std::string>* notes,
+               std::vector<Eigen::Vector3f>* colours) {
   // Load.
   check_file(path);
   MeshFile file = read_mesh_file(path);
   std::vector<std::string> said = std::move(file.notes);
+  if (colours != nullptr) *colours = std::move(file.colours);
   Mesh mesh = rounded(std::move(file), path, said);
 
   // Repair, from the corners to the surface.

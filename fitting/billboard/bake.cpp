@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/billboard/bake.h"
 
-#include "fitting/texture/surface_texture.h"
+#include "core/concurrency/parallel_for.h"
 
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace sheen::fitting::billboard {
 namespace {
@@ -49,19 +50,20 @@ void spread_outwards(FrameImage& frame) {
 
 FrameBaker::FrameBaker(const core::Mesh& mesh, const std::vector<core::TangentFrame>& frames,
                        const PatchLightField& light_field, int samples)
+    : FrameBaker(mesh, std::make_unique<PatchColours>(mesh, frames, light_field), samples) {}
+
+FrameBaker::FrameBaker(const core::Mesh& mesh, std::unique_ptr<FrameColours> colours, int samples)
     : mesh_(mesh),
-      frames_(frames),
-      light_field_(light_field),
+      colours_(std::move(colours)),
       samples_(samples),
-      corners_(mesh.positions.size()),
-      colours_(mesh.positions.size()) {}
+      corners_(mesh.positions.size()) {}
 
 FrameImage FrameBaker::bake(const FrameCamera& camera) {
   side_ = camera.side_px * samples_;
   seen_.assign(static_cast<std::size_t>(side_) * static_cast<std::size_t>(side_), {});
   project(camera);
   for (std::uint32_t i = 0; i < mesh_.triangles.size(); ++i) draw_triangle(i);
-  evaluate(camera);
+  look_from(camera);
   FrameImage frame{box(), {}, {}};
   if (frame.crop.empty()) return frame;
   frame.colour.create(frame.crop.size(), CV_8UC3);
@@ -118,40 +120,20 @@ void FrameBaker::draw_triangle(std::uint32_t triangle_idx) {
       const float per_sum = 1.0f / (at_a + at_b + at_c);
       const float z = (at_a * a.z + at_b * b.z + at_c * c.z) * per_sum;
       Seen& seen = row[x];
-      if (z > seen.z) seen = {triangle_idx, z, at_b * per_sum, at_c * per_sum};
+      if (z > seen.z) seen = {{triangle_idx, at_b * per_sum, at_c * per_sum}, z};
     }
   }
 }
 
-/// Evaluates the patches that the frame needs.
-void FrameBaker::evaluate(const FrameCamera& camera) {
+void FrameBaker::look_from(const FrameCamera& camera) {
   needed_.assign(corners_.size(), 0);
   for (const Seen& seen : seen_) {
     if (!seen.object()) continue;
-    for (const std::uint32_t vertex_idx : mesh_.triangles[seen.triangle_idx]) {
+    for (const std::uint32_t vertex_idx : mesh_.triangles[seen.point.triangle_idx]) {
       needed_[vertex_idx] = 1;
     }
   }
-  for (std::size_t i = 0; i < needed_.size(); ++i) {
-    if (needed_[i] == 0) continue;
-    const Eigen::Vector3f& position = mesh_.positions[i];
-    colours_[i] = light_field_.interpolated_part(
-        i, core::direction_towards(frames_[i], position, camera.viewer_of(position)).uv);
-  }
-}
-
-WeightedColour FrameBaker::shade(const Seen& seen) const {
-  const auto& vertex = mesh_.triangles[seen.triangle_idx];
-  const Eigen::Vector3f weight(1.0f - seen.weight_1 - seen.weight_2, seen.weight_1, seen.weight_2);
-  WeightedColour sums{Eigen::Vector3f::Zero(), 0.0f};
-  for (int corner = 0; corner < 3; ++corner) {
-    sums.colour_sum += weight[corner] * colours_[vertex[corner]].colour_sum;
-    sums.weight_sum += weight[corner] * colours_[vertex[corner]].weight_sum;
-  }
-  if (const SurfaceTexture* const texture = light_field_.texture_between_patches()) {
-    sums.colour_sum += sums.weight_sum * texture->at(seen.triangle_idx, weight);
-  }
-  return sums;
+  colours_->look_from(camera, needed_);
 }
 
 cv::Rect FrameBaker::box() const {
@@ -184,7 +166,7 @@ void FrameBaker::resolve(const cv::Point& pixel, float radius_m, cv::Vec3b& colo
         pixel.x * samples_;
     for (int x = 0; x < samples_; ++x) {
       if (!row[x].object()) continue;
-      const WeightedColour sums = shade(row[x]);
+      const WeightedColour sums = colours_->at(row[x].point, pixel * samples_ + cv::Point(x, y));
       rgb += sums.colour().cwiseMax(0.0f).cwiseMin(1.0f);
       nearest = std::max(nearest, row[x].z);
       supported = supported || sums.weight_sum > 2 * kUnseenWeight;
@@ -202,6 +184,25 @@ void FrameBaker::resolve(const cv::Point& pixel, float radius_m, cv::Vec3b& colo
   shape[0] = static_cast<std::uint8_t>((255 * covered + points / 2) / points);
   shape[1] = depth_code(nearest, radius_m);
   shape[2] = supported ? 255 : 0;
+}
+
+void bake_all(const core::Mesh& mesh, const std::vector<core::TangentFrame>& frames,
+              const PatchLightField& patches, int threads, Billboards& billboards) {
+  mean::MeanLightField means(patches.patch_count());
+  for (std::size_t i = 0; i < patches.patch_count(); ++i) {
+    means.store(i, patches.mean_colour(i), patches.observed()[i] != 0);
+  }
+  billboards.set_means(means);
+  core::parallel_for(
+      billboards.element_count(), threads,
+      [&](std::size_t begin, std::size_t end) {
+        FrameBaker baker(mesh, frames, patches, kFrameSamples);
+        for (std::size_t i = begin; i < end; ++i) {
+          billboards.set_frame(
+              i, encode(baker.bake(billboards.camera(i)), billboards.options().views.quality));
+        }
+      },
+      1);
 }
 
 }  // namespace sheen::fitting::billboard

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/billboard/billboard_fitter.h"
 
-#include "core/concurrency/parallel_for.h"
 #include "core/samples/vertex_view.h"
 #include "fitting/billboard/bake.h"
 #include "fitting/billboard/billboards.h"
@@ -13,9 +12,6 @@
 namespace sheen::fitting::billboard {
 namespace {
 
-/// Points of a pixel, to either side: outlines have a dozen steps.
-constexpr int kSamples = 3;
-
 class BillboardFitter final : public Fitter {
  public:
   BillboardFitter(const core::Mesh& mesh, const Options& options, int threads)
@@ -24,7 +20,7 @@ class BillboardFitter final : public Fitter {
         frames_(core::tangent_frames(mesh)),
         source_(make_fitter(options.baked_from, mesh, {}, threads)),
         patches_(require_patches(source_->light_field(), "a billboard's source")),
-        baker_(mesh, frames_, patches_, kSamples),
+        baker_(mesh, frames_, patches_, kFrameSamples),
         model_(options, bounding_sphere(mesh), mesh.positions.size()) {}
 
   [[nodiscard]] bool needs_images() const override { return source_->needs_images(); }
@@ -34,11 +30,6 @@ class BillboardFitter final : public Fitter {
   [[nodiscard]] FitStatistics statistics() const override { return source_->statistics(); }
 
  private:
-  void bake(std::size_t frame_idx, FrameBaker& baker) {
-    model_.set_frame(frame_idx,
-                     encode(baker.bake(model_.camera(frame_idx)), model_.options().views.quality));
-  }
-
   const core::Mesh& mesh_;
   int threads_;
   std::vector<core::TangentFrame> frames_;
@@ -57,25 +48,15 @@ const ModelUpdate& BillboardFitter::integrate(const core::Observation& observati
   const auto nearest = std::ranges::max_element(
       directions, {}, [&](const Eigen::Vector3f& direction) { return direction.dot(towards); });
   const auto frame_idx = static_cast<std::size_t>(nearest - directions.begin());
-  bake(frame_idx, baker_);
+  model_.set_frame(frame_idx,
+                   encode(baker_.bake(model_.camera(frame_idx)), model_.options().views.quality));
   update_.elements = {static_cast<std::uint32_t>(frame_idx)};
   return update_;
 }
 
 const ModelUpdate& BillboardFitter::finish() {
   source_->finish();
-  mean::MeanLightField means(patches_.patch_count());
-  for (std::size_t i = 0; i < patches_.patch_count(); ++i) {
-    means.store(i, patches_.mean_colour(i), patches_.observed()[i] != 0);
-  }
-  model_.set_means(means);
-  core::parallel_for(
-      model_.element_count(), threads_,
-      [&](std::size_t begin, std::size_t end) {
-        FrameBaker baker(mesh_, frames_, patches_, kSamples);
-        for (std::size_t i = begin; i < end; ++i) bake(i, baker);
-      },
-      1);
+  bake_all(mesh_, frames_, patches_, threads_, model_);
   update_.elements.resize(model_.element_count());
   std::iota(update_.elements.begin(), update_.elements.end(), 0u);
   return update_;

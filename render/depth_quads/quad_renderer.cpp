@@ -26,13 +26,8 @@ constexpr std::size_t kRows = 16;
 /// A photograph ready to be drawn.
 struct DecodedPhotograph {
   cv::Mat pixels;
-  std::vector<std::vector<Eigen::Vector2f>> nodes;  ///< of every level
 
-  [[nodiscard]] std::size_t byte_size() const {
-    std::size_t bytes = pixels.total() * pixels.elemSize();
-    for (const auto& level : nodes) bytes += level.size() * sizeof(level[0]);
-    return bytes;
-  }
+  [[nodiscard]] std::size_t byte_size() const { return pixels.total() * pixels.elemSize(); }
 };
 
 /// Where a pixel's ray r meets a quad: its products with normal, to_a and to_b.
@@ -66,6 +61,7 @@ class QuadRenderer final : public Renderer {
   };
 
   const DecodedPhotograph& decoded(std::size_t photograph_idx);
+  const RayGrid& rays_of(const core::CameraModel& camera);
   [[nodiscard]] std::vector<Sheet> sheets_for(const QuadCamera& viewer);
   /// Calls `visit(quad, x, y, met)` for all pixels that see a quad of the sheet.
   template <typename Visit>
@@ -77,29 +73,35 @@ class QuadRenderer final : public Renderer {
   const DepthQuads& quads_;
   int threads_;
   PixelRays rays_;
+  RayGrid photograph_rays_;  ///< of the camera that took the photograph looked at last
   ViewCache<DecodedPhotograph> cache_;
   cv::Mat inverse_depth_;  ///< CV_32FC1, of the nearest quad; 0 where there is none
 };
 
 const DecodedPhotograph& QuadRenderer::decoded(std::size_t photograph_idx) {
   return cache_.get(photograph_idx, [&] {
-    const KeptView& photograph = quads_.photographs()[photograph_idx];
-    DecodedPhotograph made{photograph.pixels(), {}};
-    for (const auto& level : quads_.quads(photograph_idx).levels) {
-      made.nodes.push_back(node_rays(photograph, level));
-    }
-    return made;
+    return DecodedPhotograph{quads_.photographs()[photograph_idx].pixels()};
   });
+}
+
+/// Photographs of a recording share their camera.
+const RayGrid& QuadRenderer::rays_of(const core::CameraModel& camera) {
+  if (!(camera.intrinsics() == photograph_rays_.camera().intrinsics())) {
+    photograph_rays_ = RayGrid(camera);
+  }
+  return photograph_rays_;
 }
 
 std::vector<QuadRenderer::Sheet> QuadRenderer::sheets_for(const QuadCamera& viewer) {
   std::vector<Sheet> sheets;
   for (const auto& [i, share] : choose_cameras(quads_, viewer.camera, viewer.camera_from_object)) {
     const KeptView& photograph = quads_.photographs()[i];
-    const std::size_t level = choose_level(photograph, quads_.quads(i), viewer);
+    const QuadView& quads = quads_.quads(i);
+    const std::size_t level = choose_level(photograph, quads, viewer);
+    const auto nodes = node_rays(photograph, quads.levels[level], rays_of(photograph.camera));
     sheets.push_back({i, share,
-                      screen_quads(photograph, quads_.quads(i), level, decoded(i).nodes[level],
-                                   quads_.options().enlargement, viewer, threads_)});
+                      screen_quads(photograph, quads, level, nodes, quads_.options().enlargement,
+                                   viewer, threads_)});
   }
   return sheets;
 }

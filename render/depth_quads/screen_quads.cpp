@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 namespace sheen::render {
@@ -146,21 +145,18 @@ std::optional<ScreenQuad> screen_quad(const Sheet& sheet, int i, int j) {
 
 }  // namespace
 
-std::vector<Eigen::Vector2f> node_rays(const KeptView& photograph, const QuadLevel& level) {
-  constexpr float none = std::numeric_limits<float>::quiet_NaN();
-  std::vector<Eigen::Vector2f> rays;
-  rays.reserve(static_cast<std::size_t>(level.columns + 1) *
-               static_cast<std::size_t>(level.rows + 1));
+std::vector<Eigen::Vector2f> node_rays(const KeptView& photograph, const QuadLevel& level,
+                                       const RayGrid& rays) {
+  std::vector<Eigen::Vector2f> nodes;
+  nodes.reserve(static_cast<std::size_t>(level.columns + 1) *
+                static_cast<std::size_t>(level.rows + 1));
   for (int j = 0; j <= level.rows; ++j) {
     for (int i = 0; i <= level.columns; ++i) {
-      const auto ray =
-          photograph.camera.unproject({photograph.crop.x + i * level.spacing_px - 0.5,
-                                       photograph.crop.y + j * level.spacing_px - 0.5});
-      rays.emplace_back(ray ? Eigen::Vector2f(ray->head<2>().cast<float>())
-                            : Eigen::Vector2f(none, none));
+      nodes.push_back(rays.at(photograph.crop.x + i * level.spacing_px - 0.5,
+                              photograph.crop.y + j * level.spacing_px - 0.5));
     }
   }
-  return rays;
+  return nodes;
 }
 
 std::size_t choose_level(const KeptView& photograph, const QuadView& quads,

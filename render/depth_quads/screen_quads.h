@@ -3,6 +3,7 @@
 
 #include "core/geometry/camera.h"
 #include "fitting/depth_quads/depth_quads.h"
+#include "render/views/ray_grid.h"
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -30,9 +31,11 @@ struct ScreenQuad {
 };
 
 /// The rays of a photograph's nodes, where they meet the plane z = 1 of its camera: node (i, j) is
-/// the upper left corner of cell (i, j). Rows of columns + 1; NaN beyond the lens model.
+/// the upper left corner of cell (i, j). Rows of columns + 1; NaN beyond the lens model. `rays` are
+/// those of its camera.
 std::vector<Eigen::Vector2f> node_rays(const fitting::KeptView& photograph,
-                                       const fitting::depth_quads::QuadLevel& level);
+                                       const fitting::depth_quads::QuadLevel& level,
+                                       const RayGrid& rays);
 
 /// The view that is drawn.
 struct QuadCamera {

@@ -6,6 +6,7 @@
 #include "fitting/billboard/directions.h"
 #include "fitting/descriptor.h"
 #include "fitting/model_file/model_part.h"
+#include "render/billboard/bake_drawn.h"
 #include "render/billboard/billboard_renderer.h"
 #include "render/billboard/draw_frames.h"
 #include "render/surface/surface_renderer.h"
@@ -240,6 +241,62 @@ TEST(BillboardFitter, ShowsFramesAsViewsCome) {
   EXPECT_EQ(baked(), 3u);
   fitter->finish();
   EXPECT_EQ(baked(), 80u);
+}
+
+// What is baked of finished patches is what the fitter of billboards bakes of the same ones.
+TEST(BakedBillboards, AreThoseOfTheFitter) {
+  const testing::Photographs photographs(
+      render::testing::sphere(0.1f, 8), 4, [](const auto& point, const auto& towards_viewer) {
+        return Eigen::Vector3f(0.5f + 3 * point.x(), 0.4f, 0.5f + 0.3f * towards_viewer.z());
+      });
+  const auto fitter = make_fitter("billboard", photographs.mesh(),
+                                  {{"directions", "20"}, {"billboard-size", "32"}});
+  const auto patches = make_fitter("sparse", photographs.mesh());
+  for (Fitter* const one : {fitter.get(), patches.get()}) {
+    photographs.show({0, 1, 2, 3}, *one);
+    one->finish();
+  }
+  const auto& expected = dynamic_cast<const Billboards&>(fitter->light_field());
+  Billboards baked(expected.options(), expected.sphere(), photographs.mesh().positions.size());
+  bake_all(photographs.mesh(), core::tangent_frames(photographs.mesh()),
+           require_patches(patches->light_field(), "this test"), 2, baked);
+  for (std::size_t i = 0; i < baked.element_count(); ++i) {
+    EXPECT_EQ(baked.frame(i).crop, expected.frame(i).crop);
+    EXPECT_EQ(baked.frame(i).colour, expected.frame(i).colour);
+    EXPECT_EQ(baked.frame(i).shape, expected.frame(i).shape);
+  }
+  EXPECT_TRUE(std::ranges::equal(baked.means().coefficients(), expected.means().coefficients()));
+}
+
+// The same patches, evaluated for every frame or drawn by a renderer that might draw anything: the
+// same shapes, and colours that differ by what a thousandth of the radius, .03 pixels, moves.
+// Frames with a field of view are drawn from where they are.
+TEST(BakedBillboards, OfWhatIsDrawnAreThoseOfPatches) {
+  const auto mesh = render::testing::torus_knot(0.2f, 240, 24);
+  const auto look = printed(mesh);
+  const auto renderer = render::make_reference_surface_renderer(mesh, look, 1);
+  for (const double field_deg : {0.0, 40.0}) {
+    Options options;
+    options.directions = 20;
+    options.side_px = kSide_px;
+    options.field_of_view_deg = field_deg;
+    Billboards patches(options, bounding_sphere(mesh), mesh.positions.size());
+    Billboards drawn = patches;
+    bake_all(mesh, core::tangent_frames(mesh), look, 1, patches);
+    render::bake_drawn(mesh, look, *renderer, drawn);
+    double sum = 0;
+    for (std::size_t i = 0; i < patches.element_count(); ++i) {
+      const FrameImage a = decode(patches.frame(i));
+      const FrameImage b = decode(drawn.frame(i));
+      ASSERT_EQ(a.crop, b.crop);
+      ASSERT_EQ(cv::norm(a.shape, b.shape, cv::NORM_INF), 0);
+      sum +=
+          cv::norm(a.colour, b.colour, cv::NORM_L1) / (3.0 * static_cast<double>(a.colour.total()));
+    }
+    const double mean = sum / static_cast<double>(patches.element_count());
+    std::printf("%g degrees: mean difference %.3f grey levels\n", field_deg, mean);
+    EXPECT_LT(mean, 0.5) << field_deg;
+  }
 }
 
 // Records that no fit writes.

@@ -7,6 +7,7 @@
 #include "render/depth_quads/camera_choice.h"
 #include "render/depth_quads/quad_renderer.h"
 #include "render/views/crop_reader.h"
+#include "render/views/ray_grid.h"
 #include "render/views/view_cache.h"
 #include "tests/fitting/photographs_for_tests.h"
 
@@ -341,6 +342,32 @@ TEST(DepthQuads, CamerasAreRanked) {
     EXPECT_EQ(chosen[1].photograph_idx, 0u);
     EXPECT_GE(chosen[0].share, chosen[1].share);
   }
+}
+
+// Bilinear over h = 4 / 576 of the focal length: h^2 / 8 times the lens' second derivatives, which
+// for r (1 + k1 r^2), k1 = -.12, are at most 6 |k1| r = .45 at the corner, r = .62: .0015 pixels
+// along each axis. Beyond the image's border it is the camera's own ray.
+TEST(RayGrid, IsTheLensToThousandthsOfAPixel) {
+  core::CameraModel::Intrinsics in;
+  in.width_px = 640;
+  in.height_px = 360;
+  in.focal_px = {576, 577};
+  in.principal_px = {323, 177};
+  in.distortion = {-0.12, 0.05, 0.001, -0.0008};
+  const core::CameraModel camera(in);
+  const render::RayGrid grid(camera);
+  double worst_px = 0;
+  for (double y = -0.5; y < 359.5; y += 1.3) {
+    for (double x = -0.5; x < 639.5; x += 1.3) {
+      const Eigen::Vector2d ray = grid.at(x, y).cast<double>();
+      worst_px = std::max(worst_px,
+                          (*camera.project({ray.x(), ray.y(), 1}) - Eigen::Vector2d(x, y)).norm());
+    }
+  }
+  note("grid_of_rays_px", worst_px);
+  EXPECT_LT(worst_px, 0.009);
+  const Eigen::Vector3f outside = camera.unproject({700.0, -20.0})->cast<float>();
+  EXPECT_EQ(grid.at(700, -20), outside.head<2>());
 }
 
 struct Bytes {
