@@ -51,8 +51,8 @@ cv::Mat picture_of(capture::Camera& camera) {
     if (buffer->format == capture::PixelFormat::video) return {};
     if (cv::Mat picture = decoded(*buffer); !picture.empty()) return picture;
   }
-  throw core::Error(core::Error::Kind::run_failed, camera.description().device,
-                    "delivers no image", "close other programs that use it");
+  throw core::Error(core::Error::Kind::run_failed, camera.description().device, "delivers no image",
+                    "close other programs that use it");
 }
 
 }  // namespace
@@ -77,8 +77,10 @@ CameraLook look_through(const CameraAccess& cameras, const std::string& address,
   return look;
 }
 
-CameraLooks::CameraLooks(CameraAccess cameras)
-    : cameras_(std::move(cameras)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+CameraLooks::CameraLooks(CameraAccess cameras, std::function<void()> on_news)
+    : cameras_(std::move(cameras)),
+      on_news_(std::move(on_news)),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 std::vector<CameraLook> CameraLooks::looks() const {
   const std::lock_guard lock(mutex_);
@@ -128,6 +130,7 @@ void CameraLooks::list() {
 void CameraLooks::run(const std::stop_token& stop) {
   list();
   while (true) {
+    if (on_news_) on_news_();
     // The next camera nobody has looked through.
     std::string address;
     std::string name;

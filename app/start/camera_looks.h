@@ -22,10 +22,10 @@ namespace sheen::app {
 struct CameraLook {
   std::string address;  ///< /dev/video0, http://...
   std::string name;
-  std::string mode;        ///< "1280x720, 30 a second"; empty: not known
-  cv::Mat picture;         ///< CV_8UC3 BGR, shared, never written to; empty: none (yet)
-  std::string fault;       ///< one line; empty: none
-  bool is_due = true;      ///< has not been looked through yet
+  std::string mode;    ///< "1280x720, 30 a second"; empty: not known
+  cv::Mat picture;     ///< CV_8UC3 BGR, shared, never written to; empty: none (yet)
+  std::string fault;   ///< one line; empty: none
+  bool is_due = true;  ///< has not been looked through yet
 };
 
 /// Who lists cameras and opens them.
@@ -49,7 +49,8 @@ CameraLook look_through(const CameraAccess& cameras, const std::string& address,
 /// capture begins, after the camera at hand.
 class CameraLooks {
  public:
-  explicit CameraLooks(CameraAccess cameras);
+  /// `on_news` (may be empty) is called on that thread whenever `looks` has changed.
+  explicit CameraLooks(CameraAccess cameras, std::function<void()> on_news = {});
 
   /// In the order in which they were found. Never waits for a camera.
   [[nodiscard]] std::vector<CameraLook> looks() const;
@@ -64,6 +65,7 @@ class CameraLooks {
   [[nodiscard]] CameraLook* find(const std::string& address);
 
   CameraAccess cameras_;
+  std::function<void()> on_news_;
   mutable std::mutex mutex_;  ///< of what follows
   std::condition_variable_any has_work_;
   std::deque<CameraLook> looks_;

@@ -53,8 +53,8 @@ fs::path downloads_folder() {
   std::error_code no_throw;
   // XDG_DOWNLOAD_DIR="$HOME/Downloads"
   const std::string key = "XDG_DOWNLOAD_DIR=\"";
-  for (const std::string& line : lines_of(base_folder("XDG_CONFIG_HOME", ".config") /
-                                          "user-dirs.dirs")) {
+  for (const std::string& line :
+       lines_of(base_folder("XDG_CONFIG_HOME", ".config") / "user-dirs.dirs")) {
     if (!line.starts_with(key) || !line.ends_with('"') || line.size() == key.size()) continue;
     std::string value = line.substr(key.size(), line.size() - key.size() - 1);
     if (value.starts_with("$HOME")) value.replace(0, 5, home.string());

@@ -56,10 +56,11 @@ Arguments made_and_shown(const fs::path& source, const fs::path& model) {
   return {"replay", source.string(), "-o", model.string(), "--preview"};
 }
 
+constexpr std::string_view kPlain = "._-/:@%+=,";  // besides letters and digits
+
 std::string quoted(const std::string& word) {
-  constexpr std::string_view plain = "._-/:@%+=,";
   const bool is_plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
-    return std::isalnum(c) != 0 || plain.find(static_cast<char>(c)) != std::string_view::npos;
+    return std::isalnum(c) != 0 || kPlain.find(static_cast<char>(c)) != std::string_view::npos;
   });
   if (is_plain) return word;
   std::string text = "'";

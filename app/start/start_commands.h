@@ -13,11 +13,11 @@ using Arguments = std::vector<std::string>;
 
 /// What a newcomer has chosen so far; drawing it is another matter (start_window.h).
 struct StartChoice {
-  std::string paper = "a4";             ///< a4 or letter
-  std::filesystem::path sheet_folder;   ///< where the sheet's PDF goes
-  std::string camera;                   ///< a device, or an address in the network
-  std::filesystem::path model_folder;   ///< where a capture goes
-  std::string name = "object";          ///< of the capture: a file's name without ending
+  std::string paper = "a4";            ///< a4 or letter
+  std::filesystem::path sheet_folder;  ///< where the sheet's PDF goes
+  std::string camera;                  ///< a device, or an address in the network
+  std::filesystem::path model_folder;  ///< where a capture goes
+  std::string name = "object";         ///< of the capture: a file's name without ending
 };
 
 /// The sheet's PDF, named after its paper.

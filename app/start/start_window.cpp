@@ -89,7 +89,7 @@ StartWindow::StartWindow(CameraAccess cameras, fs::path snapshot_folder)
     : cameras_(std::move(cameras)),
       snapshot_folder_(std::move(snapshot_folder)),
       window_("Sheen", layout::kWidth, layout::kHeight),
-      looks_(std::make_unique<CameraLooks>(cameras_)),
+      looks_(std::make_unique<CameraLooks>(cameras_, Window::wake)),
       recent_(recent_files()) {
   std::error_code no_throw;
   choice_.sheet_folder = downloads_folder();
@@ -128,7 +128,7 @@ void StartWindow::follow_command() {
   const Arguments arguments = command_->arguments();
   outcome_ = has_failed_ ? failure_text(*command_, *exit_code) : "";
   command_.reset();
-  looks_ = std::make_unique<CameraLooks>(cameras_);
+  looks_ = std::make_unique<CameraLooks>(cameras_, Window::wake);
   if (has_failed_) return;
   if (arguments.front() == "board") {
     const fs::path sheet = sheet_file(choice_);
@@ -156,15 +156,15 @@ void StartWindow::run(const Arguments& arguments) {
   } catch (const core::Error& error) {
     outcome_ = error.what();
     has_failed_ = true;
-    looks_ = std::make_unique<CameraLooks>(cameras_);
+    looks_ = std::make_unique<CameraLooks>(cameras_, Window::wake);
   }
 }
 
 void StartWindow::open(const fs::path& path) {
   if (const auto arguments = open_arguments(path)) return run(*arguments);
   has_failed_ = true;
-  outcome_ = path.string() +
-             ": is no model, session, film or folder of pictures; drop one of these here";
+  outcome_ =
+      path.string() + ": is no model, session, film or folder of pictures; drop one of these here";
 }
 
 void StartWindow::lay_out() {
@@ -214,7 +214,8 @@ void StartWindow::lay_out() {
 
 void StartWindow::show_sheet_step() {
   step_title("1", "Print the sheet", window_.fonts());
-  wrapped(theme::kQuiet, "The object stands in its free middle; the tags tell where the camera is.");
+  wrapped(theme::kQuiet,
+          "The object stands in its free middle; the tags tell where the camera is.");
   gap(0.4f);
   constexpr std::array papers{std::pair{"A4", "a4"}, std::pair{"Letter", "letter"}};
   for (const auto& [label, paper] : papers) {
@@ -226,7 +227,8 @@ void StartWindow::show_sheet_step() {
   const Arguments arguments = board_arguments(choice_);
   const float below = command_height(as_typed("sheen", arguments)) + lines(2.2f);
   const float width = ImGui::GetContentRegionAvail().x;
-  show_image(choice_.paper, pictures_.contains(choice_.paper) ? cv::Mat() : draw_sheet(choice_.paper),
+  show_image(choice_.paper,
+             pictures_.contains(choice_.paper) ? cv::Mat() : draw_sheet(choice_.paper),
              {width, ImGui::GetContentRegionAvail().y - below});
   go_to_foot(below - ImGui::GetStyle().ItemSpacing.y);
   show_command(arguments);
@@ -275,7 +277,7 @@ void StartWindow::show_cameras(float height) {
                                       : "No camera at this machine: plug one in and look again, or "
                                         "give a phone's address below.");
     if (!is_listing && looks_ && ImGui::Button("Look again")) {
-      looks_ = std::make_unique<CameraLooks>(cameras_);
+      looks_ = std::make_unique<CameraLooks>(cameras_, Window::wake);
     }
     return;
   }
@@ -287,8 +289,9 @@ void StartWindow::show_cameras(float height) {
   ImGui::BeginChild("cameras", {0, height});
   const float spacing = ImGui::GetStyle().ItemSpacing.x;
   const std::size_t columns = seen_.size() == 1 ? 1 : 2;
-  const float width = (ImGui::GetContentRegionAvail().x - spacing * static_cast<float>(columns - 1)) /
-                      static_cast<float>(columns);
+  const float width =
+      (ImGui::GetContentRegionAvail().x - spacing * static_cast<float>(columns - 1)) /
+      static_cast<float>(columns);
   const float tile = std::min(height, 0.75f * width);
   for (std::size_t i = 0; i < seen_.size(); ++i) {
     if (i % columns != 0) ImGui::SameLine();
@@ -323,11 +326,12 @@ void StartWindow::show_camera(const CameraLook& look, const ImVec2& size) {
     const float fit = std::min(room.x / wide, room.y / high);
     const ImVec2 at(from.x + 0.5f * (room.x - fit * wide), from.y + 0.5f * (room.y - fit * high));
     // NOLINTNEXTLINE(performance-no-int-to-ptr): ImGui's names of textures
-    list.AddImage(reinterpret_cast<ImTextureID>(std::uintptr_t{shown.texture->name()}), at,
-                  {at.x + fit * wide, at.y + fit * high});
+    list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(shown.texture->name())),
+                  at, {at.x + fit * wide, at.y + fit * high});
   } else {
     const std::string words = look.is_due ? "Looking\u2026" : look.fault;
-    const std::string shown = words.empty() ? "sends video; its picture is seen when it records" : words;
+    const std::string shown =
+        words.empty() ? "sends video; its picture is seen when it records" : words;
     list.AddText(ImGui::GetFont(), em, {from.x + em, from.y + em},
                  ImGui::GetColorU32(look.fault.empty() ? theme::kQuiet : theme::kAlarm),
                  shown.c_str(), nullptr, size.x - 2 * em);
@@ -351,8 +355,8 @@ void StartWindow::show_open_step() {
   wrapped(theme::kQuiet,
           "A model, a session, a film or a folder of pictures: drop it on this window, or choose.");
   gap(0.4f);
-  const Arguments made = made_.empty() ? Arguments{"view", "object.glb"}
-                                       : Arguments{"view", made_.string()};
+  const Arguments made =
+      made_.empty() ? Arguments{"view", "object.glb"} : Arguments{"view", made_.string()};
   const auto typed = open_arguments(path_.data());
   const Arguments shown = typed.value_or(made);
   const float below = command_height(as_typed("sheen", shown)) + lines(3.6f);
@@ -425,10 +429,12 @@ void StartWindow::show_image(const std::string& key, const cv::Mat& image, const
     shown.texture->upload(image);
     shown.aspect = static_cast<float>(image.cols) / static_cast<float>(image.rows);
   }
-  const ImVec2 fit(std::min(size.x, size.y * shown.aspect), std::min(size.y, size.x / shown.aspect));
+  const ImVec2 fit(std::min(size.x, size.y * shown.aspect),
+                   std::min(size.y, size.x / shown.aspect));
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 0.5f * (size.x - fit.x));
   // NOLINTNEXTLINE(performance-no-int-to-ptr): ImGui's names of textures
-  ImGui::Image(reinterpret_cast<ImTextureID>(std::uintptr_t{shown.texture->name()}), fit);
+  ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(shown.texture->name())),
+               fit);
 }
 
 }  // namespace sheen::app

@@ -4,6 +4,7 @@
 #include "tests/app/copied_session.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace sheen::tests {
 namespace {
