@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdlib>
 #include <string_view>
 #include <utility>
 
@@ -59,13 +60,24 @@ Arguments made_and_shown(const fs::path& source, const fs::path& model) {
 constexpr std::string_view kPlain = "._-/:@%+=,";  // besides letters and digits
 
 std::string quoted(const std::string& word) {
-  const bool is_plain = !word.empty() && std::ranges::all_of(word, [](unsigned char c) {
-    return std::isalnum(c) != 0 || kPlain.find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  if (is_plain) return word;
+  if (!word.empty() && std::ranges::all_of(word, [](unsigned char c) {
+        return std::isalnum(c) != 0 || kPlain.find(static_cast<char>(c)) != std::string_view::npos;
+      })) {
+    return word;
+  }
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return text + "'";
+}
+
+/// Behind "HOME/"; nothing for what lies elsewhere.
+std::optional<std::string> below_home(const std::string& path) {
+  const char* const home = std::getenv("HOME");
+  const std::string start = home == nullptr ? "" : std::string(home) + "/";
+  if (start.size() < 2 || !path.starts_with(start) || path.size() == start.size()) {
+    return std::nullopt;
+  }
+  return path.substr(start.size());
 }
 
 }  // namespace
@@ -123,9 +135,17 @@ fs::path model_of(const Arguments& arguments) {
   return output == arguments.end() ? fs::path() : fs::path(*std::next(output));
 }
 
+std::string shown_path(const fs::path& path) {
+  const auto rest = below_home(path.string());
+  return rest ? "~/" + *rest : path.string();
+}
+
 std::string as_typed(const std::string& program, const Arguments& arguments) {
   std::string text = quoted(program);
-  for (const std::string& argument : arguments) text += " " + quoted(argument);
+  for (const std::string& argument : arguments) {
+    const auto rest = below_home(argument);
+    text += rest ? " ~/" + quoted(*rest) : " " + quoted(argument);
+  }
   return text;
 }
 

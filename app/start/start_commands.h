@@ -16,7 +16,7 @@ struct StartChoice {
   std::string paper = "a4";            ///< a4 or letter
   std::filesystem::path sheet_folder;  ///< where the sheet's PDF goes
   std::string camera;                  ///< a device, or an address in the network
-  std::filesystem::path model_folder;  ///< where a capture goes
+  std::filesystem::path model_folder;  ///< where a capture goes; empty: the present one
   std::string name = "object";         ///< of the capture: a file's name without ending
 };
 
@@ -41,7 +41,10 @@ std::optional<Arguments> open_arguments(const std::filesystem::path& path);
 /// The model that a command makes or shows; empty for others.
 std::filesystem::path model_of(const Arguments& arguments);
 
-/// The command as one types it in a shell: words quoted where they must be.
+/// A path as people write it: the home folder is ~.
+std::string shown_path(const std::filesystem::path& path);
+
+/// The command as one types it in a shell: words quoted where they must be, ~ for the home folder.
 std::string as_typed(const std::string& program, const Arguments& arguments);
 
 }  // namespace sheen::app

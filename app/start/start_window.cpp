@@ -49,18 +49,32 @@ void step_title(const char* number, const char* words, const theme::Fonts& fonts
   ImGui::PopFont();
 }
 
-/// Room between the cursor and what stands `lines` high at the card's foot.
-void go_to_foot(float height) {
-  const float foot = ImGui::GetWindowHeight() - ImGui::GetStyle().WindowPadding.y - height;
-  ImGui::SetCursorPosY(std::max(ImGui::GetCursorPosY(), foot));
-}
-
 float lines(float count) {
   return count * ImGui::GetTextLineHeightWithSpacing();
 }
 
-float command_height(const std::string& command) {
-  return ImGui::CalcTextSize(command.c_str(), nullptr, false, ImGui::GetContentRegionAvail().x).y;
+/// Where the parts at a card's foot begin, y in its window: fields to fill, the command, its
+/// button.
+struct CardFoot {
+  float fields, command, button;
+};
+
+CardFoot card_foot(const Arguments& arguments, int fields) {
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const std::string command = as_typed("sheen", arguments);
+  const float width = ImGui::GetContentRegionAvail().x;
+  const float high = ImGui::CalcTextSize(command.c_str(), nullptr, false, width).y;
+  CardFoot foot{};
+  foot.button = ImGui::GetWindowHeight() - style.WindowPadding.y - ImGui::GetFrameHeight();
+  foot.command = foot.button - 2 * style.ItemSpacing.y - high;
+  foot.fields = foot.command - style.ItemSpacing.y -
+                static_cast<float>(fields) * ImGui::GetFrameHeightWithSpacing();
+  return foot;
+}
+
+/// From the cursor to a place below.
+float room_above(float y) {
+  return y - ImGui::GetCursorPosY() - 2 * ImGui::GetStyle().ItemSpacing.y;
 }
 
 template <std::size_t kSize>
@@ -91,9 +105,7 @@ StartWindow::StartWindow(CameraAccess cameras, fs::path snapshot_folder)
       window_("Sheen", layout::kWidth, layout::kHeight),
       looks_(std::make_unique<CameraLooks>(cameras_, Window::wake)),
       recent_(recent_files()) {
-  std::error_code no_throw;
   choice_.sheet_folder = downloads_folder();
-  choice_.model_folder = fs::current_path(no_throw);
   set_text(name_, choice_.name);
 }
 
@@ -225,13 +237,12 @@ void StartWindow::show_sheet_step() {
   ImGui::NewLine();
   gap(0.4f);
   const Arguments arguments = board_arguments(choice_);
-  const float below = command_height(as_typed("sheen", arguments)) + lines(2.2f);
+  const CardFoot foot = card_foot(arguments, 0);
   const float width = ImGui::GetContentRegionAvail().x;
   show_image(choice_.paper,
              pictures_.contains(choice_.paper) ? cv::Mat() : draw_sheet(choice_.paper),
-             {width, ImGui::GetContentRegionAvail().y - below});
-  go_to_foot(below - ImGui::GetStyle().ItemSpacing.y);
-  show_command(arguments);
+             {width, room_above(foot.command)});
+  show_command(arguments, foot.command);
   if (step_button("Make the PDF and open it", true)) run(arguments);
 }
 
@@ -243,10 +254,10 @@ void StartWindow::show_capture_step() {
   choice_.name = name_.data();
   const auto arguments = capture_arguments(choice_);
   const Arguments shown = arguments.value_or(Arguments{"capture", "CAMERA", "-o", "object.glb"});
-  const float below = command_height(as_typed("sheen", shown)) + lines(6.0f);
+  const CardFoot foot = card_foot(shown, 2);
   gap(0.4f);
-  show_cameras(ImGui::GetContentRegionAvail().y - below);
-  go_to_foot(below - ImGui::GetStyle().ItemSpacing.y);
+  show_cameras(room_above(foot.fields));
+  ImGui::SetCursorPosY(foot.fields);
 
   const float width = ImGui::GetContentRegionAvail().x;
   const float look_width = ImGui::CalcTextSize("Look").x + 2 * ImGui::GetStyle().FramePadding.x;
@@ -265,8 +276,7 @@ void StartWindow::show_capture_step() {
   ImGui::SameLine();
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
   ImGui::InputText("##name", name_.data(), name_.size());
-  gap(0.2f);
-  show_command(shown);
+  show_command(shown, foot.command);
   if (step_button("Capture", arguments.has_value())) run(*arguments);
 }
 
@@ -359,8 +369,8 @@ void StartWindow::show_open_step() {
       made_.empty() ? Arguments{"view", "object.glb"} : Arguments{"view", made_.string()};
   const auto typed = open_arguments(path_.data());
   const Arguments shown = typed.value_or(made);
-  const float below = command_height(as_typed("sheen", shown)) + lines(3.6f);
-  ImGui::BeginChild("recent", {0, ImGui::GetContentRegionAvail().y - below});
+  const CardFoot foot = card_foot(shown, 1);
+  ImGui::BeginChild("recent", {0, room_above(foot.fields)});
   if (recent_.empty()) text(theme::kQuiet, "Nothing opened yet");
   const float width = ImGui::GetContentRegionAvail().x;
   const std::vector<fs::path> offered = recent_;  // opening one changes the list
@@ -371,17 +381,16 @@ void StartWindow::show_open_step() {
     ImGui::SetCursorPos({from.x + 0.3f * ImGui::GetFontSize(), from.y + 2});
     text(theme::kText, fitted(path.filename().string(), width));
     ImGui::SetCursorPosX(from.x + 0.3f * ImGui::GetFontSize());
-    text(theme::kQuiet, fitted(path.parent_path().string(), width));
+    text(theme::kQuiet, fitted(shown_path(path.parent_path()), width));
     ImGui::PopID();
   }
   ImGui::EndChild();
-  go_to_foot(below - ImGui::GetStyle().ItemSpacing.y);
+  ImGui::SetCursorPosY(foot.fields);
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x);
   const bool is_entered =
       ImGui::InputTextWithHint("##path", "A file or a folder", path_.data(), path_.size(),
                                ImGuiInputTextFlags_EnterReturnsTrue);
-  gap(0.2f);
-  show_command(shown);
+  show_command(shown, foot.command);
   const bool is_possible = typed || !made_.empty();
   if (step_button("Open", is_possible)) run(shown);
   if (is_entered && !typed) open(path_.data());
@@ -407,7 +416,8 @@ void StartWindow::show_foot() {
   }
 }
 
-void StartWindow::show_command(const Arguments& arguments) {
+void StartWindow::show_command(const Arguments& arguments, float y) {
+  ImGui::SetCursorPosY(y);
   wrapped(theme::kAccent, as_typed("sheen", arguments));
 }
 
@@ -415,6 +425,8 @@ bool StartWindow::step_button(const char* label, bool is_possible) {
   ImGui::BeginDisabled(command_ != nullptr || !is_possible);
   ImGui::PushStyleColor(ImGuiCol_Button, kAction);
   ImGui::PushStyleColor(ImGuiCol_ButtonHovered, kActionLit);
+  ImGui::SetCursorPosY(ImGui::GetWindowHeight() - ImGui::GetStyle().WindowPadding.y -
+                       ImGui::GetFrameHeight());
   const bool is_clicked = ImGui::Button(label, {ImGui::GetContentRegionAvail().x, 0});
   ImGui::PopStyleColor(2);
   ImGui::EndDisabled();

@@ -53,7 +53,7 @@ class StartWindow {
   void show_foot();
   void show_cameras(float height);
   void show_camera(const CameraLook& look, const ImVec2& size);
-  void show_command(const Arguments& arguments);
+  static void show_command(const Arguments& arguments, float y);
   bool step_button(const char* label, bool is_possible);
   void show_image(const std::string& key, const cv::Mat& image, const ImVec2& size);
 
