@@ -30,6 +30,8 @@ constexpr float kFoot = 84;
 constexpr float kSideStep = 0.26f;  // of the width; the capture takes what is left
 constexpr float kCardRounding = 8;
 
+constexpr double kTyping_s = 0.015;  // longest wait for an event
+
 const ImVec4 kAction{0.22f, 0.37f, 0.44f, 1};
 const ImVec4 kActionLit{0.25f, 0.43f, 0.51f, 1};
 
@@ -110,7 +112,9 @@ StartWindow::StartWindow(CameraAccess cameras, fs::path snapshot_folder)
 }
 
 bool StartWindow::redraw(double longest_wait_s) {
-  window_.begin_redraw(longest_wait_s);
+  // ImGui takes in a key a redraw: whoever types waits for none.
+  const bool is_typing = ImGui::GetIO().WantTextInput;
+  window_.begin_redraw(is_typing ? std::min(kTyping_s, longest_wait_s) : longest_wait_s);
   for (const KeyPress& press : window_.key_presses()) obey(press);
   for (const fs::path& path : window_.dropped()) open(path);
   follow_command();

@@ -99,7 +99,9 @@ pipeline::ReconstructionOptions preview_options(pipeline::ReconstructionOptions 
 bool is_good_enough(const reconstruction::WalkSight& sight,
                     const reconstruction::GrowingHull::News& hull) {
   using reconstruction::kViewPlaces;
-  if (!hull.is_settled || !hull.doubt.empty()) return false;
+  const std::size_t known = reconstruction::kViewDirections - sight.missing.size();
+  const bool is_made_of_most = hull.views > 0 && 4 * hull.views >= 3 * known;
+  if (!hull.doubt.empty() || !(hull.is_settled || is_made_of_most)) return false;
   std::array<std::size_t, kViewPlaces> missing_heights{};
   for (const std::size_t direction : sight.missing) ++missing_heights[direction % kViewPlaces];
   constexpr std::size_t heights = reconstruction::kViewDirections / kViewPlaces;

@@ -20,8 +20,9 @@
 namespace sheen::app {
 
 /// Whether a walk's shape is good enough for a light field to begin on it: somebody has looked from
-/// every place round the object, at some height, and a third more views have hardly changed the
-/// hull.
+/// every place round the object, at some height, and the hull is complete, made with the present
+/// lens of three quarters of the views there are or more; or a third more views have hardly changed
+/// it.
 bool is_good_enough(const reconstruction::WalkSight& sight,
                     const reconstruction::GrowingHull::News& hull);
 

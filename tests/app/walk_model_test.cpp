@@ -23,12 +23,18 @@ reconstruction::GrowingHull::News settled() {
   return news;
 }
 
-TEST(WalkIsGoodEnough, OnceEveryPlaceWasLookedFromAtSomeHeightAndTheHullHasSettled) {
+TEST(WalkIsGoodEnough, OnceEveryPlaceWasLookedFromAtSomeHeightAndTheHullSaysEnough) {
   reconstruction::WalkSight sight;
   // Two of three rings are missing: every place is seen from the lowest.
   for (std::size_t i = kViewPlaces; i < kViewDirections; ++i) sight.missing.push_back(i);
   EXPECT_TRUE(app::is_good_enough(sight, settled()));
   EXPECT_FALSE(app::is_good_enough(sight, {}));
+  // 16 views are known; a hull of 12 of them is made of three quarters.
+  reconstruction::GrowingHull::News made;
+  made.views = 12;
+  EXPECT_TRUE(app::is_good_enough(sight, made));
+  made.views = 11;
+  EXPECT_FALSE(app::is_good_enough(sight, made));
   auto doubted = settled();
   doubted.doubt = "more than one object stands on the sheet";
   EXPECT_FALSE(app::is_good_enough(sight, doubted));
