@@ -354,7 +354,8 @@ void StartWindow::show_camera(const CameraLook& look, const ImVec2& size) {
   list.AddRectFilled({from.x, to.y - label}, to, ImGui::GetColorU32(theme::kRaised));
   list.AddText({from.x + 0.7f * em, to.y - label + 0.3f * em}, ImGui::GetColorU32(theme::kText),
                fitted(name, size.x - 1.4f * em).c_str());
-  const std::string detail = look.mode.empty() ? look.address : look.address + "  " + look.mode;
+  const std::string shown_address = name == look.address ? "" : look.address + "  ";
+  const std::string detail = shown_address + look.mode;
   list.AddText({from.x + 0.7f * em, to.y - 1.35f * em}, ImGui::GetColorU32(theme::kQuiet),
                fitted(detail, size.x - 1.4f * em).c_str());
   list.PopClipRect();

@@ -78,7 +78,10 @@ class WalkModelOfSample : public testing::Test {
 
   void look_at_all() {
     const auto frames = capture::open_frames(session_);
-    while (const auto frame = frames->next()) walk_.look_at(*frame);
+    while (auto frame = frames->next()) {
+      frame->time_s = frame->index;  // so slowly that the walk looks at every one
+      walk_.look_at(*frame);
+    }
   }
 
   app::WalkModel::Parts parts(std::function<std::unique_ptr<capture::FrameSource>()> frames) {
@@ -114,6 +117,7 @@ class ToldAtItsEnd : public capture::FrameSource {
 /// took, whatever the walk had seen when it began.
 TEST_F(WalkModelOfSample, FitsTheRecordingFromItsFirstFrameOn) {
   look_at_all();
+  ASSERT_TRUE(app::is_good_enough(walk_.sight(), settled()));
   std::binary_semaphore has_ended(0);
   app::WalkModel model(parts(
       [&] { return std::make_unique<ToldAtItsEnd>(capture::open_frames(session_), has_ended); }));
