@@ -7,7 +7,6 @@
 #include "core/diagnostics/error.h"
 #include "core/mesh/read_mesh.h"
 #include "reconstruction/live/view_directions.h"
-#include "reconstruction/object/object_mesh.h"
 
 #include <stdlib.h>
 
@@ -101,7 +100,8 @@ bool is_good_enough(const reconstruction::WalkSight& sight,
   using reconstruction::kViewPlaces;
   const std::size_t known = reconstruction::kViewDirections - sight.missing.size();
   const bool is_made_of_most = hull.views > 0 && 4 * hull.views >= 3 * known;
-  if (!hull.doubt.empty() || !(hull.is_settled || is_made_of_most)) return false;
+  if (hull.hull == nullptr || !hull.doubt.empty()) return false;
+  if (!(hull.is_settled || is_made_of_most)) return false;
   std::array<std::size_t, kViewPlaces> missing_heights{};
   for (const std::size_t direction : sight.missing) ++missing_heights[direction % kViewPlaces];
   constexpr std::size_t heights = reconstruction::kViewDirections / kViewPlaces;
@@ -142,35 +142,22 @@ void WalkModel::run(const std::stop_token& stop) {
 }
 
 std::shared_ptr<WalkModel::Growth> WalkModel::begin(ThreadPace& pace) {
-  std::size_t refused_with = 0;  // views
   while (true) {
     const auto views = parts_.walk.views();
-    const bool is_new = views && 3 * views->views.size() > 4 * refused_with;
-    if (!is_new || !is_good_enough(parts_.walk.sight(), parts_.hull())) {
-      pace.wait(kLookAgain_s);
-      continue;
+    const auto hull = parts_.hull();
+    if (views && is_good_enough(parts_.walk.sight(), hull)) {
+      return begin_on(*hull.hull, *views, pace);
     }
-    try {
-      return begin_with(*views, pace);
-    } catch (const core::Error& error) {  // a third more views may tell the shape
-      refused_with = views->views.size();
-      const std::lock_guard lock(mutex_);
-      doubt_ = error.what();
-    }
+    pace.wait(kLookAgain_s);
   }
 }
 
-std::shared_ptr<WalkModel::Growth> WalkModel::begin_with(const reconstruction::WalkViews& views,
-                                                         ThreadPace& pace) {
-  // Measure the mesh.
-  const auto found =
-      reconstruction::measure_object(parts_.session, views.camera, views.board, views.views, 1,
-                                     [&pace](std::string_view, int, int) { pace.rest(); });
+std::shared_ptr<WalkModel::Growth> WalkModel::begin_on(const core::Mesh& hull,
+                                                       const reconstruction::WalkViews& views,
+                                                       ThreadPace& pace) {
   const TemporaryFiles files;
-  core::write_ply(files / "object.ply", found.mesh, found.confidence);
+  core::write_ply(files / "object.ply", hull);
   capture::write_board(files / "board.yaml", views.board);
-
-  // Begin the light field on it.
   capture::Session session = capture::open_unfinished_session(parts_.session);
   session.camera = parts_.walk.sight().camera;
   session.board = files / "board.yaml";
@@ -195,7 +182,6 @@ std::shared_ptr<WalkModel::Growth> WalkModel::begin_with(const reconstruction::W
                          .limits = options.limits,
                          .is_camera = true});
   const std::lock_guard lock(mutex_);
-  doubt_.clear();
   growth_ = growth;
   return growth;
 }

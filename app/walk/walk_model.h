@@ -30,8 +30,8 @@ bool is_good_enough(const reconstruction::WalkSight& sight,
 std::unique_ptr<capture::FrameSource> thinned_in_time(std::unique_ptr<capture::FrameSource> source,
                                                       double interval_s);
 
-/// The light field of a walk that goes on: once its shape is good enough a mesh is measured on the
-/// views that the walk has kept, then the recording is fitted from its first frame on, ten frames a
+/// The light field of a walk that goes on: once its shape is good enough the recording is fitted
+/// on the coarse hull, from its first frame on, ten frames a
 /// second, until it has caught up with the camera. All of it on one thread that takes half a core
 /// at most and yields to all others (ThreadPace). A preview: the model that is kept is made from
 /// the whole recording at full size when it has ended.
@@ -58,13 +58,14 @@ class WalkModel {
 
   /// Null before it has begun.
   [[nodiscard]] std::shared_ptr<Growth> growth() const;
-  /// Why it could not begin yet, a sentence; empty: nothing was wrong.
+  /// Why there is none, a sentence; empty: nothing was wrong.
   [[nodiscard]] std::string doubt() const;
 
  private:
   void run(const std::stop_token& stop);
   std::shared_ptr<Growth> begin(ThreadPace& pace);
-  std::shared_ptr<Growth> begin_with(const reconstruction::WalkViews& views, ThreadPace& pace);
+  std::shared_ptr<Growth> begin_on(const core::Mesh& hull, const reconstruction::WalkViews& views,
+                                   ThreadPace& pace);
 
   Parts parts_;
   mutable std::mutex mutex_;  ///< of what follows
