@@ -20,6 +20,7 @@
 #include "app/commands/synth.h"
 #include "app/commands/view.h"
 #include "app/interrupt.h"
+#include "app/start/run_start.h"
 #include "core/diagnostics/error.h"
 
 #include <cstdio>
@@ -47,10 +48,6 @@ constexpr const char* kThreeCommands =
 
 int main(int argc, char** argv) {
   using namespace sheen;
-  if (argc == 1) {
-    std::fputs(kThreeCommands, stdout);
-    return kDone;
-  }
   app::CommandLine program(
       "Sheen captures how an object looks from every direction: a recording of a walk round it\n"
       "becomes a surface light field that can be drawn from anywhere.",
@@ -62,6 +59,7 @@ int main(int argc, char** argv) {
       "Or start with the recording that comes with the source:\n"
       "  sheen replay sample_data/glossy -o model.glb --hold-out 5\n"
       "  sheen evaluate model.glb sample_data/glossy/held_out\n"
+      "Without arguments, on a display: a window that does all of this.\n"
       "Exit codes: 0 done, 1 failed while running, 2 bad arguments or bad input.");
   app::CommandContext context;
   app::add_board_command(program, context);
@@ -87,6 +85,10 @@ int main(int argc, char** argv) {
 
   app::watch_for_interrupts();
   try {
+    if (argc == 1) {
+      if (!app::run_start(".")) std::fputs(kThreeCommands, stdout);
+      return kDone;
+    }
     program.run(argc, argv);
     return kDone;
   } catch (const core::Error& error) {

@@ -79,4 +79,8 @@ std::optional<int> ChildProcess::exit_code() {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+void ChildProcess::interrupt() const {
+  kill(process_, SIGINT);
+}
+
 }  // namespace sheen::app

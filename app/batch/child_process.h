@@ -15,7 +15,8 @@ class ChildProcess {
  public:
   /// Starts `program` (found as a shell finds it) with `arguments`; both streams are added to the
   /// file `log`. Throws core::Error (run_failed); a program that is not there ends with exit code
-  /// 127. To be called while this process has one thread.
+  /// 127. To be called on a thread that lives as long as the process is wanted: with it the process
+  /// is asked to end.
   ChildProcess(const std::string& program, const std::vector<std::string>& arguments,
                const std::filesystem::path& log);
   ~ChildProcess();
@@ -29,6 +30,9 @@ class ChildProcess {
 
   /// How it ended (docs/commands.md; 128 + signal when one ended it); nothing while it runs.
   std::optional<int> exit_code();
+
+  /// SIGINT, as Ctrl-C sends it. Not to be called once it has ended.
+  void interrupt() const;
 
  private:
   pid_t process_ = -1;

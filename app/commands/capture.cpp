@@ -6,6 +6,7 @@
 #include "app/interrupt.h"
 #include "app/preview/run_preview.h"
 #include "app/terminal_sink.h"
+#include "app/walk/walk_model.h"
 #include "capture/calibration/calibration_target.h"
 #include "capture/pose/board.h"
 #include "capture/session/camera_recording.h"
@@ -175,9 +176,15 @@ void watch_walk(const CaptureOptions& options, const capture::SessionSetup& setu
   const auto look = [&] { look_on(walk, options.session, recording, context); };
   if (!options.fit.preview) return look();
   const reconstruction::LiveHull hull(walk, options.session);
+  const WalkModel model({.session = options.session,
+                         .walk = walk,
+                         .hull = [&hull] { return hull.news(); },
+                         .frames = [&recording] { return recording.recorded_frames(); },
+                         .options = options.fit.reconstruction});
   run_walk({.title = options.session.filename().string() + " \u2013 Sheen",
             .walk = walk,
             .hull = hull,
+            .model = &model,
             .snapshot_folder = options.fit.snapshots},
            look, [&window_closed] { window_closed = true; });
 }

@@ -165,7 +165,7 @@ std::unique_ptr<LiveSession> make_live_session(const ReplayOptions& options, Rec
   if (!options.preview) return nullptr;
   return std::make_unique<LiveSession>(LiveSession::Parts{
       .model = fitted.model(),
-      .history = *fitted.history(),
+      .history = fitted.history(),
       .baseline = fitted.mean_history(),
       .mesh = fitted.mesh(),
       .camera = fitted.session().camera,

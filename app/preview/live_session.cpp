@@ -138,7 +138,8 @@ void LiveSession::undo(double seconds) {
   std::size_t views = 0;
   {
     const std::lock_guard lock(mutex_);
-    if (!parts_.history.can_undo()) {
+    if (parts_.history == nullptr) return;
+    if (!parts_.history->can_undo()) {
       status_.note = "Nothing can be taken back: the disk for temporary files is full";
       return;
     }
@@ -153,13 +154,13 @@ void LiveSession::undo(double seconds) {
   // Build everything anew without those views.
   guidance::CaptureScore score(parts_.mesh.positions.size());
   parts_.model.with([&](const fitting::Fitter&) {
-    parts_.history.undo(views,
-                        [&](const core::SampleBatch& batch, const fitting::LightField& model) {
-                          if (const auto* const patches = fitting::as_patches(model)) {
-                            score.judge(batch, *patches);
-                          }
-                          score.note(batch, 0);
-                        });
+    parts_.history->undo(views,
+                         [&](const core::SampleBatch& batch, const fitting::LightField& model) {
+                           if (const auto* const patches = fitting::as_patches(model)) {
+                             score.judge(batch, *patches);
+                           }
+                           score.note(batch, 0);
+                         });
     if (parts_.baseline != nullptr) {
       parts_.baseline->undo(views, [](const core::SampleBatch&, const fitting::LightField&) {});
     }
@@ -177,6 +178,7 @@ void LiveSession::undo(double seconds) {
 }
 
 void LiveSession::save() {
+  if (!parts_.save) return;
   std::string told;
   try {
     told = parts_.model.with(
@@ -244,7 +246,8 @@ void LiveSession::take(PlannerAdvice advice) {
 bool LiveSession::try_look(const Look& look) {
   return parts_.model.try_look(
       [&](const fitting::Fitter& fitter, const fitting::ModelUpdate& changes) {
-        look(fitter.light_field(), changes, parts_.history.undos());
+        const std::size_t undos = parts_.history == nullptr ? 0 : parts_.history->undos();
+        look(fitter.light_field(), changes, undos);
       });
 }
 

@@ -26,8 +26,8 @@ namespace sheen::app {
 class LiveSession final : public pipeline::FrameListener {
  public:
   struct Parts {
-    pipeline::SharedModel& model;  ///< over `history`
-    fitting::UndoableFitter& history;
+    pipeline::SharedModel& model;       ///< over `history`
+    fitting::UndoableFitter* history;   ///< null: nothing can be taken back
     fitting::UndoableFitter* baseline;  ///< is undone with it; may be null
     const core::Mesh& mesh;
     core::CameraModel camera;
@@ -38,7 +38,8 @@ class LiveSession final : public pipeline::FrameListener {
     bool is_camera = false;
     bool refuse_faults = false;  ///< keep frames out that contradict the model
     /// Saves the model as it is; returns what to tell. Called with nobody else at the model.
-    std::function<std::string(const fitting::LightField&)> save;
+    /// Empty: there is nothing to save it to.
+    std::function<std::string(const fitting::LightField&)> save = {};
   };
 
   explicit LiveSession(Parts parts);

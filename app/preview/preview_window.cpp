@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kUndo_s = 5;
 constexpr double kFineAfter_s = 0.15;  // stillness after which the model is drawn finer
-constexpr std::size_t kBytesPerRedraw = 512 * 1024;
 
 }  // namespace
 
@@ -24,6 +23,7 @@ PreviewWindow::PreviewWindow(const PreviewSubject& subject)
       camera_view_(window_.gl()) {
   if (subject_.light_field != nullptr) painter_.show(*subject_.light_field);
   if (subject_.live != nullptr) {
+    feed_.emplace(*subject_.live, painter_);
     trail_.lens = &subject_.live->camera();
     subject_.live->set_wake([] { Window::wake(); });
   }
@@ -56,44 +56,21 @@ void PreviewWindow::take_news() {
   if (status_.camera_from_object) trail_.present = status_.camera_from_object;
   trail_.hint = status_.phase == LiveStatus::Phase::finished ? std::nullopt : status_.hint;
 
-  // Cameras; all of them after an undo.
-  auto news = subject_.live->path_since(trail_.poses.size(), generation_);
-  if (std::exchange(generation_, news.generation) != news.generation) trail_.poses.clear();
-  trail_.poses.insert(trail_.poses.end(), news.poses.begin(), news.poses.end());
-
-  // Scores.
-  if (auto advice = subject_.live->take_advice()) {
-    painter_.set_scores(std::move(advice->scores));
-    reachable_ = std::move(advice->reachable);
-  }
-  if (!painter_.draws_from_model()) look_at_model();
-}
-
-void PreviewWindow::look_at_model() {
-  subject_.live->try_look([this](const fitting::LightField& light_field,
-                                 const fitting::ModelUpdate& changes, std::size_t undos) {
-    if (!has_model_ || undos != undos_) {
-      painter_.show(light_field);
-      has_model_ = true;
-      undos_ = undos;
-    } else {
-      painter_.note_changes(changes);
-    }
-    painter_.send_changes(kBytesPerRedraw);
-    if (!painter_.draws_from_model()) return;
-    model_view_.paint(painter_, state_.layer, pace_.is_slow());
-    camera_view_.paint(painter_, state_);
-  });
+  feed_->take_news(trail_.poses);
+  if (!painter_.draws_from_model()) feed_->look([this] { paint_views(); });
 }
 
 void PreviewWindow::paint() {
-  const bool borrows = subject_.live != nullptr && painter_.draws_from_model();
-  if (borrows) {
-    look_at_model();
-    return;
+  if (feed_ && painter_.draws_from_model()) {
+    feed_->look([this] { paint_views(); });
+  } else {
+    paint_views();
   }
+}
+
+void PreviewWindow::paint_views() {
   model_view_.paint(painter_, state_.layer, pace_.is_slow());
-  if (subject_.live != nullptr) camera_view_.paint(painter_, state_);
+  if (feed_) camera_view_.paint(painter_, state_);
 }
 
 void PreviewWindow::lay_out() {
@@ -162,7 +139,7 @@ std::optional<PatchNews> PreviewWindow::patch_news() {
   const auto known = subject_.live->knowledge_of(*vertex);
   news.samples = known.samples;
   news.seen = known.seen;
-  if (reachable_) news.reachable = (*reachable_)[*vertex];
+  if (const auto* reachable = feed_->reachable()) news.reachable = (*reachable)[*vertex];
   return news;
 }
 

@@ -3,6 +3,7 @@
 
 #include "app/preview/camera_view.h"
 #include "app/preview/live_session.h"
+#include "app/preview/model_feed.h"
 #include "app/preview/model_view.h"
 #include "app/preview/object_painter.h"
 #include "app/preview/preview_subject.h"
@@ -15,6 +16,7 @@
 #include <Eigen/Core>
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace sheen::app {
@@ -39,7 +41,7 @@ class PreviewWindow {
 
  private:
   void take_news();
-  void look_at_model();
+  void paint_views();
   void paint();
   void lay_out();
   void show_views(const layout::Area& area);
@@ -57,10 +59,7 @@ class PreviewWindow {
   LiveStatus status_;
   int shown_frame_ = -1;  ///< frames_read when the image was taken over
   CameraTrail trail_;
-  std::size_t generation_ = 0;
-  std::size_t undos_ = 0;
-  bool has_model_ = false;
-  std::shared_ptr<const std::vector<fitting::guidance::DirectionCells>> reachable_;
+  std::optional<ModelFeed> feed_;  ///< of a live session
   bool snapshot_wanted_ = false;
   std::string note_;
   cv::Mat image_;

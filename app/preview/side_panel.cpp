@@ -102,25 +102,6 @@ void phase_line(const LiveStatus& live, const theme::Fonts& fonts) {
   }
 }
 
-void coverage_bar(const LiveStatus& live, const theme::Fonts& fonts) {
-  heading("Directions looked from");
-  ImGui::PushFont(fonts.large);
-  // Nothing is known before the planner has looked from everywhere once.
-  text(theme::kText, live.coverage > 0 ? fmt::format("{:.0f} %", 100 * live.coverage) : "\u2013");
-  ImGui::PopFont();
-  const ImVec2 from = ImGui::GetCursorScreenPos();
-  const float width = ImGui::GetContentRegionAvail().x;
-  const float height = 0.4f * ImGui::GetFontSize();
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled(from, {from.x + width, from.y + height}, ImGui::GetColorU32(theme::kRaised),
-                     0.5f * height);
-  if (live.coverage > 0.01) {
-    list.AddRectFilled(from, {from.x + width * static_cast<float>(live.coverage), from.y + height},
-                       ImGui::GetColorU32(theme::kAccent), 0.5f * height);
-  }
-  ImGui::Dummy({width, height});
-}
-
 void quality_curve(const LiveStatus& live) {
   if (live.psnr_db.size() < 2) return;
   heading("Prediction of new frames");
@@ -167,22 +148,45 @@ void live_buttons(const LiveStatus& live, Clicks& clicks) {
 
 }  // namespace
 
+void show_layers(const ViewState& state, bool live, std::vector<ViewCommand>& clicks) {
+  heading("Show");
+  layer_choice(state, live, clicks);
+  legend(state.layer);
+}
+
+void show_coverage(double coverage, const theme::Fonts& fonts) {
+  heading("Directions looked from");
+  ImGui::PushFont(fonts.large);
+  // Nothing is known before the planner has looked from everywhere once.
+  text(theme::kText, coverage > 0 ? fmt::format("{:.0f} %", 100 * coverage) : "\u2013");
+  ImGui::PopFont();
+  const ImVec2 from = ImGui::GetCursorScreenPos();
+  const float width = ImGui::GetContentRegionAvail().x;
+  const float height = 0.4f * ImGui::GetFontSize();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(from, {from.x + width, from.y + height}, ImGui::GetColorU32(theme::kRaised),
+                     0.5f * height);
+  if (coverage > 0.01) {
+    list.AddRectFilled(from, {from.x + width * static_cast<float>(coverage), from.y + height},
+                       ImGui::GetColorU32(theme::kAccent), 0.5f * height);
+  }
+  ImGui::Dummy({width, height});
+}
+
 std::vector<ViewCommand> show_side_panel(const PanelContents& contents, const ViewState& state,
                                          const theme::Fonts& fonts) {
   Clicks clicks;
   const LiveStatus* const live = contents.live;
   if (live != nullptr) {
     phase_line(*live, fonts);
-    coverage_bar(*live, fonts);
+    show_coverage(live->coverage, fonts);
   } else {
     ImGui::PushFont(fonts.large);
     text(theme::kText, "Light field");
     ImGui::PopFont();
     for (const auto& [name, value] : contents.facts) row(name, value);
   }
-  heading("Show");
-  layer_choice(state, live != nullptr, clicks);
-  legend(state.layer);
+  show_layers(state, live != nullptr, clicks);
   if (live != nullptr) {
     gap(0.3f);
     live_buttons(*live, clicks);

@@ -38,6 +38,12 @@ struct PanelContents {
 std::vector<ViewCommand> show_side_panel(const PanelContents& contents, const ViewState& state,
                                          const theme::Fonts& fonts);
 
+/// The buttons that choose a layer, with the legend of the one that is shown.
+void show_layers(const ViewState& state, bool live, std::vector<ViewCommand>& clicks);
+
+/// How much has been looked at, [0, 1]; 0: not known yet.
+void show_coverage(double coverage, const theme::Fonts& fonts);
+
 /// What is known of a patch, in a small window whose lower right corner is given.
 void show_patch_card(const PatchNews& patch, const ImVec2& lower_right);
 

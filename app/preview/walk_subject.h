@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "app/walk/walk_model.h"
 #include "reconstruction/live/live_hull.h"
 #include "reconstruction/live/live_walk.h"
 
@@ -14,6 +15,7 @@ struct WalkSubject {
   std::string title;
   const reconstruction::LiveWalk& walk;
   const reconstruction::LiveHull& hull;
+  const WalkModel* model = nullptr;  ///< null: no light field before the recording has ended
   std::filesystem::path snapshot_folder = {};
 };
 

@@ -3,6 +3,7 @@
 
 #include "app/preview/commands.h"
 #include "app/preview/panel_words.h"
+#include "app/preview/side_panel.h"
 #include "app/preview/snapshot.h"
 #include "app/preview/theme.h"
 
@@ -21,10 +22,8 @@ constexpr double kSameSize = 0.2;  // of the radius: a new hull is seen as the o
 
 }  // namespace
 
-WalkWindow::ShownHull::ShownHull(Window& window, std::shared_ptr<const core::Mesh> hull)
-    : mesh(std::move(hull)),
-      painter(window, window.gl(), *mesh),
-      view(window.gl(), *mesh, Eigen::Vector3d::UnitZ(), true) {}
+WalkWindow::ShownObject::ShownObject(Window& window, const core::Mesh& mesh)
+    : painter(window, window.gl(), mesh), view(window.gl(), mesh, Eigen::Vector3d::UnitZ(), true) {}
 
 WalkWindow::WalkWindow(WalkSubject subject)
     : subject_(std::move(subject)),
@@ -33,12 +32,11 @@ WalkWindow::WalkWindow(WalkSubject subject)
 
 bool WalkWindow::redraw(double longest_wait_s) {
   window_.begin_redraw(longest_wait_s);
-  for (const KeyPress& press : window_.key_presses()) obey(press);
-  take_news();
-  if (hull_) {
-    hull_->view.paint(hull_->painter, Layer::mesh, false);
-    camera_view_.paint(hull_->painter, state_);
+  for (const KeyPress& press : window_.key_presses()) {
+    if (const auto command = command_of(press)) obey(*command);
   }
+  take_news();
+  paint();
   lay_out();
   window_.draw();
   if (std::exchange(snapshot_wanted_, false)) {
@@ -61,19 +59,62 @@ void WalkWindow::take_news() {
   }
   trail_.lens = &sight_.camera;
   news_ = subject_.hull.news();
-  if (news_.hull && (!hull_ || hull_->mesh != news_.hull)) show_hull(news_.hull);
+  const bool is_hull = !object_ || !object_->growth;
+  if (auto growth = subject_.model != nullptr ? subject_.model->growth() : nullptr) {
+    if (is_hull) show_light_field(std::move(growth));
+    take_light_field_news();
+  } else if (news_.hull && (!object_ || object_->hull != news_.hull)) {
+    show_hull(news_.hull);
+  }
 }
 
 void WalkWindow::show_hull(std::shared_ptr<const core::Mesh> hull) {
-  auto next = std::make_unique<ShownHull>(window_, std::move(hull));
-  if (hull_) {
-    const double before_m = hull_->view.camera().object_radius_m();
+  auto next = std::make_unique<ShownObject>(window_, *hull);
+  next->hull = std::move(hull);
+  show_instead(std::move(next));
+}
+
+void WalkWindow::show_light_field(std::shared_ptr<WalkModel::Growth> growth) {
+  auto next = std::make_unique<ShownObject>(window_, growth->live->mesh());
+  next->feed.emplace(*growth->live, next->painter);
+  next->growth = std::move(growth);
+  show_instead(std::move(next));
+  state_.layer = Layer::radiance;
+}
+
+/// Seen as the one before was, where both are of about one size.
+void WalkWindow::show_instead(std::unique_ptr<ShownObject> next) {
+  if (object_) {
+    const double before_m = object_->view.camera().object_radius_m();
     const double after_m = next->view.camera().object_radius_m();
     if (std::abs(after_m - before_m) < kSameSize * before_m) {
-      next->view.camera() = hull_->view.camera();
+      next->view.camera() = object_->view.camera();
     }
   }
-  hull_ = std::move(next);
+  object_ = std::move(next);
+}
+
+void WalkWindow::take_light_field_news() {
+  status_ = object_->growth->live->status();
+  object_->feed->take_news(object_->fitted);
+  if (!object_->painter.draws_from_model()) object_->feed->look([this] { paint_views(); });
+  // Directions first: what the light field asks for comes after somebody has looked from
+  // everywhere.
+  if (trail_.missing.empty()) trail_.hint = status_.hint;
+}
+
+void WalkWindow::paint() {
+  if (!object_) return;
+  if (object_->feed && object_->painter.draws_from_model()) {
+    object_->feed->look([this] { paint_views(); });
+  } else {
+    paint_views();
+  }
+}
+
+void WalkWindow::paint_views() {
+  object_->view.paint(object_->painter, state_.layer, true);
+  camera_view_.paint(object_->painter, state_);
 }
 
 void WalkWindow::look_for_missing() {
@@ -97,20 +138,20 @@ void WalkWindow::lay_out() {
 void WalkWindow::show_views(const layout::Area& area) {
   layout::begin_views(area);
   const layout::Area inset = layout::inset_area(area, sight_.camera, window_.content_scale());
-  if (!hull_) {
+  if (!object_) {
     camera_view_.show(area.corner, area.size, state_);
   } else if (state_.camera_is_large) {
     camera_view_.show(area.corner, area.size, state_);
-    hull_->view.show(inset.corner, inset.size, state_, trail_, false);
+    object_->view.show(inset.corner, inset.size, state_, trail_, false);
   } else {
-    hull_->view.show(area.corner, area.size, state_, trail_, true);
+    object_->view.show(area.corner, area.size, state_, trail_, true);
     camera_view_.show(inset.corner, inset.size, state_);
   }
-  if (hull_) layout::frame_inset(inset, window_.content_scale());
+  if (object_) layout::frame_inset(inset, window_.content_scale());
   ImGui::End();
 }
 
-void WalkWindow::show_panel(const layout::Area& area) const {
+void WalkWindow::show_panel(const layout::Area& area) {
   layout::begin_panel(area);
   ImGui::PushFont(window_.fonts().large);
   text(theme::kText, "Recording");
@@ -122,15 +163,13 @@ void WalkWindow::show_panel(const layout::Area& area) const {
   } else {
     wrapped(theme::kQuiet, trail_.hint ? "Follow the amber arrow" : "Seen from all sides");
   }
-  heading("Shape");
-  if (!news_.doubt.empty()) {
-    wrapped(theme::kWarning, news_.doubt);
-  } else if (!news_.hull) {
-    wrapped(theme::kQuiet, "Appears once the object was seen from eight directions");
-  } else if (news_.is_settled) {
-    wrapped(theme::kGood, "Settled: further views add appearance");
+  if (object_ && object_->growth) {
+    show_light_field_state();
+    std::vector<ViewCommand> clicks;
+    show_layers(state_, true, clicks);
+    for (const ViewCommand click : clicks) obey(click);
   } else {
-    wrapped(theme::kQuiet, "Growing: go all the way round, low views too");
+    show_shape_state();
   }
   heading("Directions");
   row("seen", fmt::format("{} of {}", kViewDirections - sight_.missing.size(), kViewDirections));
@@ -143,12 +182,47 @@ void WalkWindow::show_panel(const layout::Area& area) const {
   ImGui::End();
 }
 
-void WalkWindow::obey(const KeyPress& press) {
-  const auto command = command_of(press);
-  if (!command || turns(state_, *command)) return;
-  switch (*command) {
+void WalkWindow::show_shape_state() const {
+  heading("Shape");
+  if (!news_.doubt.empty()) {
+    wrapped(theme::kWarning, news_.doubt);
+  } else if (!news_.hull) {
+    wrapped(theme::kQuiet, "Appears once the object was seen from eight directions");
+  } else if (news_.is_settled) {
+    const std::string doubt = subject_.model != nullptr ? subject_.model->doubt() : "";
+    wrapped(theme::kGood, "Settled: once round, the light field begins");
+    if (!doubt.empty()) wrapped(theme::kWarning, doubt);
+  } else {
+    wrapped(theme::kQuiet, "Growing: go all the way round, low views too");
+  }
+}
+
+void WalkWindow::show_light_field_state() const {
+  heading("Light field so far");
+  row("frames in it", fmt::format("{}", status_.frames_fitted));
+  if (status_.is_flat) wrapped(theme::kGood, "Quality no longer rises: you may stop");
+  wrapped(theme::kQuiet, "A preview: the one that is kept is made from the whole recording.");
+  show_coverage(status_.coverage, window_.fonts());
+}
+
+void WalkWindow::obey(ViewCommand command) {
+  if (turns(state_, command)) return;
+  const bool has_layers = object_ && object_->growth;
+  switch (command) {
+    case ViewCommand::show_radiance:
+      if (has_layers) state_.layer = Layer::radiance;
+      break;
+    case ViewCommand::show_needs_views:
+      if (has_layers) state_.layer = Layer::needs_views;
+      break;
+    case ViewCommand::show_misfit:
+      if (has_layers) state_.layer = Layer::misfit;
+      break;
+    case ViewCommand::show_mesh:
+      state_.layer = Layer::mesh;
+      break;
     case ViewCommand::frame_object:
-      if (hull_) hull_->view.camera().frame();
+      if (object_) object_->view.camera().frame();
       break;
     case ViewCommand::snapshot:
       snapshot_wanted_ = true;

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <utility>
 
 namespace sheen::app {
@@ -69,10 +70,25 @@ struct Interface {
   Interface& operator=(Interface&&) = delete;
 };
 
+/// What has come between two redraws.
+struct Incoming {
+  std::vector<KeyPress> presses;
+  std::vector<std::filesystem::path> dropped;
+};
+
+Incoming& incoming_of(GLFWwindow* window) {
+  return *static_cast<Incoming*>(glfwGetWindowUserPointer(window));
+}
+
 void note_press(GLFWwindow* window, int key, int /*scancode*/, int action, int modifiers) {
   if (action != GLFW_PRESS) return;
-  static_cast<std::vector<KeyPress>*>(glfwGetWindowUserPointer(window))
-      ->push_back({key, modifiers});
+  incoming_of(window).presses.push_back({key, modifiers});
+}
+
+void note_drop(GLFWwindow* window, int count, const char** paths) {
+  for (const char* path : std::span(paths, static_cast<std::size_t>(count))) {
+    incoming_of(window).dropped.emplace_back(path);
+  }
 }
 
 }  // namespace
@@ -82,6 +98,7 @@ struct Window::Impl {
     // Ours first: ImGui calls on whatever was there before it.
     glfwSetWindowUserPointer(handle.get(), &incoming);
     glfwSetKeyCallback(handle.get(), note_press);
+    glfwSetDropCallback(handle.get(), note_drop);
     glfwMakeContextCurrent(handle.get());
     glfwSwapInterval(1);
     interface = std::make_unique<Interface>(handle.get());
@@ -90,7 +107,7 @@ struct Window::Impl {
   Library library;
   Handle handle;
   std::unique_ptr<Interface> interface;
-  std::vector<KeyPress> incoming;
+  Incoming incoming;
 };
 
 Window::Window(const std::string& title, int width, int height)
@@ -118,7 +135,8 @@ void Window::begin_redraw(double longest_wait_s) {
   } else {
     glfwPollEvents();
   }
-  presses_ = std::exchange(impl_->incoming, {});
+  presses_ = std::exchange(impl_->incoming.presses, {});
+  dropped_ = std::exchange(impl_->incoming.dropped, {});
   follow_content_scale();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();

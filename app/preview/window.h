@@ -7,6 +7,7 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -48,6 +49,9 @@ class Window final : public render::Context {
   /// Keys that went down since the last redraw, in order; none is lost however slow redraws are.
   [[nodiscard]] const std::vector<KeyPress>& key_presses() const { return presses_; }
 
+  /// Files and folders that were dropped on the window since the last redraw.
+  [[nodiscard]] const std::vector<std::filesystem::path>& dropped() const { return dropped_; }
+
   [[nodiscard]] bool wants_to_close() const;
   void close();
   /// Wakes `begin_redraw`; may be called from any thread.
@@ -69,6 +73,7 @@ class Window final : public render::Context {
   theme::Fonts fonts_;
   float content_scale_ = 0;
   std::vector<KeyPress> presses_;
+  std::vector<std::filesystem::path> dropped_;
 };
 
 }  // namespace sheen::app

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // In place of the window where the build leaves it out (SHEEN_WINDOW off).
 #include "app/preview/run_preview.h"
+#include "app/start/run_start.h"
 #include "core/diagnostics/error.h"
 
 namespace sheen::app {
@@ -29,6 +30,10 @@ void run_preview(const PreviewSubject& /*subject*/, const std::function<void()>&
 void run_walk(const WalkSubject& /*subject*/, const std::function<void()>& /*work*/,
               const std::function<void()>& /*on_closed*/) {
   throw no_window();
+}
+
+bool run_start(const std::filesystem::path& /*snapshot_folder*/) {
+  return false;
 }
 
 }  // namespace sheen::app

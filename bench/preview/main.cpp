@@ -40,7 +40,7 @@ class Capture {
                  .frames = std::make_unique<PacedSource>(capture::open_frames(session), pace_)},
                 {.undoable = true, .threads = options.threads}, sink_),
         live_({.model = fitted_.model(),
-               .history = *fitted_.history(),
+               .history = fitted_.history(),
                .baseline = nullptr,
                .mesh = fitted_.mesh(),
                .camera = session.camera,

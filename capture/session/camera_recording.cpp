@@ -25,8 +25,10 @@ constexpr std::size_t kMostUnrecorded = 3;
 /// Follows the recording's file while it grows.
 class LiveFrames : public FrameSource {
  public:
-  explicit LiveFrames(CameraRecording& recording)
-      : recording_(recording), reader_(AviReader::open(recording.recorder_.video())) {}
+  LiveFrames(CameraRecording& recording, bool takes_unrecorded)
+      : recording_(recording),
+        takes_unrecorded_(takes_unrecorded),
+        reader_(AviReader::open(recording.recorder_.video())) {}
 
   std::optional<Frame> next() override {
     while (true) {
@@ -57,6 +59,7 @@ class LiveFrames : public FrameSource {
   }
 
   std::optional<Frame> next_unrecorded() {
+    if (!takes_unrecorded_) return std::nullopt;
     // First what was taken to be recorded, then what came after the fault.
     while (const auto image = recording_.recorder_.next_unwritten()) {
       if (auto frame = decode(*image->bytes, image->time_us)) return frame;
@@ -68,6 +71,7 @@ class LiveFrames : public FrameSource {
   }
 
   CameraRecording& recording_;
+  bool takes_unrecorded_;
   std::optional<AviReader> reader_;
   int read_ = 0;
   int damaged_ = 0;
@@ -91,8 +95,14 @@ void CameraRecording::stop() {
 
 std::unique_ptr<FrameSource> CameraRecording::frames() {
   const CameraDescription camera = status().description;
-  if (camera.video) return open_live_video(recorder_, camera);
-  return std::make_unique<LiveFrames>(*this);
+  if (camera.video) return open_live_video(recorder_, camera, true);
+  return std::make_unique<LiveFrames>(*this, true);
+}
+
+std::unique_ptr<FrameSource> CameraRecording::recorded_frames() {
+  const CameraDescription camera = status().description;
+  if (camera.video) return open_live_video(recorder_, camera, false);
+  return std::make_unique<LiveFrames>(*this, false);
 }
 
 RecordingStatus CameraRecording::status() const {

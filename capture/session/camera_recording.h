@@ -59,6 +59,9 @@ class CameraRecording {
   /// those taken later go on, unrecorded, and the oldest of them are dropped; of a compressed video
   /// none is taken later. `next` waits for frames. To be destroyed before the recording.
   [[nodiscard]] std::unique_ptr<FrameSource> frames();
+  /// The same for one more reader, who takes nothing away from the first: only what is in the file,
+  /// so it ends at a fault of the disk.
+  [[nodiscard]] std::unique_ptr<FrameSource> recorded_frames();
 
   [[nodiscard]] RecordingStatus status() const;
 

@@ -20,8 +20,9 @@ ImageSize size_of(const CameraDescription& camera) {
 
 class RecordingBytes : public VideoBytes {
  public:
-  RecordingBytes(SessionRecorder& recorder, const CameraDescription& camera)
+  RecordingBytes(SessionRecorder& recorder, const CameraDescription& camera, bool takes_unrecorded)
       : recorder_(recorder),
+        takes_unrecorded_(takes_unrecorded),
         file_(FileHandle::open_to_read(recorder.video())),
         muxer_(camera.video.value(), size_of(camera)) {
     static_cast<void>(muxer_.begin());  // which the file has
@@ -34,6 +35,7 @@ class RecordingBytes : public VideoBytes {
       place_ += taken;
       return taken;
     }
+    if (!takes_unrecorded_) return 0;
     while (taken_ == unwritten_.size()) {
       const auto image = recorder_.next_unwritten();
       if (!image) return 0;
@@ -48,6 +50,7 @@ class RecordingBytes : public VideoBytes {
 
  private:
   SessionRecorder& recorder_;
+  bool takes_unrecorded_;
   FileHandle file_;
   MatroskaMuxer muxer_;  ///< for what does not come to the file
   std::uint64_t place_ = 0;
@@ -57,8 +60,8 @@ class RecordingBytes : public VideoBytes {
 
 class LiveVideo : public FrameSource {
  public:
-  LiveVideo(SessionRecorder& recorder, const CameraDescription& camera)
-      : recorder_(recorder), size_(size_of(camera)), bytes_(recorder, camera) {}
+  LiveVideo(SessionRecorder& recorder, const CameraDescription& camera, bool takes_unrecorded)
+      : recorder_(recorder), size_(size_of(camera)), bytes_(recorder, camera, takes_unrecorded) {}
 
   std::optional<Frame> next() override {
     if (!frames_ && !open()) return std::nullopt;
@@ -91,8 +94,9 @@ class LiveVideo : public FrameSource {
 }  // namespace
 
 std::unique_ptr<FrameSource> open_live_video(SessionRecorder& recorder,
-                                             const CameraDescription& camera) {
-  return std::make_unique<LiveVideo>(recorder, camera);
+                                             const CameraDescription& camera,
+                                             bool takes_unrecorded) {
+  return std::make_unique<LiveVideo>(recorder, camera, takes_unrecorded);
 }
 
 }  // namespace sheen::capture

@@ -10,9 +10,10 @@
 namespace sheen::capture {
 
 /// The frames of a compressed video while it is recorded, decoded from its file as it grows, after
-/// a fault of the disk from the pictures that did not come to it. They are those of a replay. The
-/// recorder is borrowed.
+/// a fault of the disk from the pictures that did not come to it (`takes_unrecorded`: only one
+/// reader may). They are those of a replay. The recorder is borrowed.
 std::unique_ptr<FrameSource> open_live_video(SessionRecorder& recorder,
-                                             const CameraDescription& camera);
+                                             const CameraDescription& camera,
+                                             bool takes_unrecorded);
 
 }  // namespace sheen::capture

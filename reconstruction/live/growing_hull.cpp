@@ -31,6 +31,7 @@ bool GrowingHull::step(const WalkViews& walk) {
   if (began_with_ == 0 || walk.lenses != lenses_ || 3 * walk.views.size() >= 4 * began_with_) {
     pass_ = 0;
     shape_.reset();
+    if (walk.lenses != lenses_) news_.views = 0;
     began_with_ = walk.views.size();
     lenses_ = walk.lenses;
   }
@@ -63,6 +64,7 @@ void GrowingHull::show(const Shape& shape) {
   news_.hull = std::make_shared<const core::Mesh>(march_tetrahedra(shape.grid));
   news_.doubt.clear();
   if (!is_last) return;
+  news_.views = began_with_;
   const double before_m3 = std::exchange(volume_m3_, volume_of(shape.grid));
   news_.is_settled = std::abs(volume_m3_ - before_m3) < kSettled * volume_m3_;
 }

@@ -23,6 +23,7 @@ class GrowingHull {
     std::shared_ptr<const core::Mesh> hull;  ///< board frame; null: none yet
     std::string doubt;                       ///< why none is found, a sentence; empty: one is
     bool is_settled = false;                 ///< a third more views have hardly changed it
+    std::size_t views = 0;  ///< of the last complete run of passes with the present lens; 0: none
   };
 
   /// `session` names the walk in doubts.

@@ -190,7 +190,7 @@ class LivePipeline : private pipeline::FrameListener {
                  .make_visibility = core::make_ray_visibility},
                 options(frames), sink_),
         live_({.model = fitted_.model(),
-               .history = *fitted_.history(),
+               .history = fitted_.history(),
                .baseline = nullptr,
                .mesh = fitted_.mesh(),
                .camera = fitted_.session().camera,

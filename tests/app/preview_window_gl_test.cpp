@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "app/preview/preview_window.h"
 #include "app/preview/walk_window.h"
+#include "app/start/start_window.h"
 #include "capture/session/session.h"
 #include "core/diagnostics/error.h"
 #include "tests/app/display.h"
+#include "tests/app/playing_camera.h"
 #include "tests/app/program.h"
 #include "tests/render/test_scenes.h"
 
@@ -153,6 +155,32 @@ TEST(WalkWindow, ShowsWhatTheCameraSeesAndCloses) {
   bool is_open = true;
   for (int i = 0; is_open && i < kPatience; ++i) is_open = window.redraw(0.02);
   EXPECT_FALSE(is_open);
+}
+
+TEST(StartWindow, ShowsACameraChoosesItAndCloses) {
+  const auto display = tests::VirtualDisplay::open(1400, 900);
+  if (!display) GTEST_SKIP() << "Xvfb or xdotool is not installed: no window to test";
+  const tests::TemporaryFolder folder;
+  setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
+  const CameraAccess cameras{
+      .list =
+          [] {
+            return std::vector<capture::CameraListing>{
+                {.device = "/dev/locked", .name = "Locked", .fault = "belongs to another"},
+                {.device = "/dev/played", .name = "Player"}};
+          },
+      .open = [](const std::string&) { return std::make_unique<tests::PlayingCamera>(); }};
+  StartWindow window(cameras, folder.path());
+  display->act({"mousemove", "500", "20"});
+  // The first that works is chosen by itself.
+  for (int i = 0; i < kPatience && window.choice().camera.empty(); ++i) window.redraw(0.02);
+  EXPECT_EQ(window.choice().camera, "/dev/played");
+  EXPECT_FALSE(window.is_busy());
+  display->act({"key", "--clearmodifiers", "q"});
+  bool is_open = true;
+  for (int i = 0; is_open && i < kPatience; ++i) is_open = window.redraw(0.02);
+  EXPECT_FALSE(is_open);
+  unsetenv("XDG_STATE_HOME");
 }
 
 TEST(NoDisplay, IsOneClearError) {

@@ -4,6 +4,7 @@
 #include "tests/app/copied_session.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace sheen::tests {
 namespace {
@@ -92,7 +93,9 @@ TEST_F(Walk, TooFewFramesDoNotTellTheCamera) {
       << run.standard_error;
 }
 
-TEST(Sheen, WithoutArgumentsNamesThreeCommands) {
+TEST(Sheen, WithoutArgumentsAndDisplayNamesThreeCommands) {
+  unsetenv("DISPLAY");
+  unsetenv("WAYLAND_DISPLAY");
   const ProgramRun run = run_sheen({});
   EXPECT_EQ(run.exit_code, 0);
   for (const char* command : {"sheen board", "sheen replay walk.mp4", "sheen view"}) {
