@@ -22,11 +22,6 @@ constexpr std::array<std::string_view, 6> kImageEndings{".jpg", ".jpeg", ".png",
                                                         ".bmp", ".tif",  ".tiff"};
 constexpr std::array<std::string_view, 3> kRecordings{"frames.avi", "frames.mkv", "frames.mp4"};
 
-bool is_image(const fs::path& path) {
-  const std::string ending = core::lower_case(path.extension().string());
-  return std::find(kImageEndings.begin(), kImageEndings.end(), ending) != kImageEndings.end();
-}
-
 bool is_hidden(const fs::path& path) {
   return path.filename().string().starts_with('.');
 }
@@ -63,6 +58,11 @@ std::unique_ptr<FrameSource> open_whole_video(const fs::path& path) {
 
 }  // namespace
 
+bool is_picture_name(const fs::path& path) {
+  const std::string ending = core::lower_case(path.extension().string());
+  return std::find(kImageEndings.begin(), kImageEndings.end(), ending) != kImageEndings.end();
+}
+
 std::vector<fs::path> pictures_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::optional<UnreadableKind> other;
@@ -71,7 +71,7 @@ std::vector<fs::path> pictures_in(const fs::path& folder) {
        entry.increment(fault)) {
     // Macs leave ._IMG_0001.JPG beside IMG_0001.JPG; hidden files are nobody's photographs.
     if (!entry->is_regular_file(fault) || is_hidden(entry->path())) continue;
-    if (is_image(entry->path())) files.push_back(entry->path());
+    if (is_picture_name(entry->path())) files.push_back(entry->path());
     if (!other) other = unreadable_ending(entry->path());
   }
   std::sort(files.begin(), files.end());

@@ -3,6 +3,8 @@
 
 #include "capture/calibration/calibration_images.h"
 #include "capture/session/session_file.h"
+#include "capture/source/still_reader.h"
+#include "capture/source/video_source.h"
 #include "core/diagnostics/error.h"
 #include "core/files/staged_output.h"
 #include "core/text/lower_case.h"
@@ -26,7 +28,12 @@ std::string ending_of(const fs::path& file) {
   return core::lower_case(file.extension().string());
 }
 
+// Both look into the source first: later its faults would be told of a copy that does not stay.
 SessionFile put_video(const fs::path& video, const fs::path& folder) {
+  if (is_picture_name(video)) {
+    throw core::bad_input(video, "is one picture", "name the folder with all pictures, or a video");
+  }
+  static_cast<void>(stored_video_size(video));
   const std::string name = "frames" + ending_of(video);
   link_or_copy(video, folder / name);
   return {.video = name};
@@ -34,6 +41,7 @@ SessionFile put_video(const fs::path& video, const fs::path& folder) {
 
 SessionFile put_pictures(const fs::path& pictures, const fs::path& folder) {
   const std::vector<fs::path> files = pictures_in(pictures);
+  static_cast<void>(StillReader().read(files.front(), std::nullopt));
   const std::string ending = ending_of(files.front());
   fs::create_directories(folder / "images");
   for (std::size_t i = 0; i < files.size(); ++i) {

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "capture/source/exif.h"
 
+#include <algorithm>
 #include <optional>
 
 namespace sheen::capture {
 namespace {
 
-constexpr std::uint16_t kOrientation = 0x0112, kProfile = 0x8773, kExif = 0x8769,
-                        kInteroperability = 0xA005, kColourSpace = 0xA001, kFocal35mm = 0xA405,
-                        kIndex = 0x0001;
+constexpr std::uint16_t kWidth = 0x0100, kHeight = 0x0101, kOrientation = 0x0112, kProfile = 0x8773,
+                        kExif = 0x8769, kInteroperability = 0xA005, kColourSpace = 0xA001,
+                        kFocal35mm = 0xA405, kIndex = 0x0001;
 constexpr std::uint16_t kShort = 3;
 
 /// Numbers of a TIFF structure in its byte order; nothing beyond its end.
@@ -92,6 +93,17 @@ ExifFacts read_exif(std::span<const std::uint8_t> tiff) {
     }
   }
   return facts;
+}
+
+std::optional<ImageSize> tiff_size(std::span<const std::uint8_t> tiff) {
+  const TiffBytes bytes(tiff);
+  if (!bytes.is_tiff()) return std::nullopt;
+  const auto width = bytes.value(bytes.first_directory(), kWidth);
+  const auto height = bytes.value(bytes.first_directory(), kHeight);
+  if (!width || !height) return std::nullopt;
+  constexpr std::uint32_t most = 1U << 30U;
+  return ImageSize{static_cast<int>(std::min(most, *width)),
+                   static_cast<int>(std::min(most, *height))};
 }
 
 std::span<const std::uint8_t> tiff_profile(std::span<const std::uint8_t> tiff) {

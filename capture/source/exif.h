@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "capture/source/frame_range.h"
+
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -17,6 +19,10 @@ struct ExifFacts {
 /// Reads a TIFF structure, which EXIF is and TIFF files are. Whatever cannot be read is passed
 /// over.
 ExifFacts read_exif(std::span<const std::uint8_t> tiff);
+
+/// Stored pixels of the first picture of a TIFF file, each side cut off at 2^30; nothing where it
+/// does not say.
+std::optional<ImageSize> tiff_size(std::span<const std::uint8_t> tiff);
 
 /// Bytes of the ICC profile of a TIFF file; empty where there is none.
 std::span<const std::uint8_t> tiff_profile(std::span<const std::uint8_t> tiff);

@@ -30,6 +30,17 @@ std::uint32_t big_endian(Bytes bytes, std::size_t offset, std::size_t size) {
   return value;
 }
 
+std::uint32_t little_endian(Bytes bytes, std::size_t offset, std::size_t size) {
+  std::uint32_t value = 0;
+  for (std::size_t i = size; i > 0; --i) value = value << 8U | bytes[offset + i - 1];
+  return value;
+}
+
+/// A side as headers hold it, cut off at 2^30.
+int side(std::uint32_t pixels) {
+  return static_cast<int>(std::min(1U << 30U, pixels));
+}
+
 Orientation orientation_of(int exif) {
   // TIFF's eight: as the first row and column of the stored picture are to be seen.
   constexpr std::array<Orientation, 9> table{{{0, false},
@@ -77,9 +88,9 @@ ImageKind kind_of(Bytes bytes) {
 void read_jpeg(Bytes bytes, ImageFacts& facts) {
   std::map<int, Bytes> profile_parts;
   std::size_t at = 2;
-  while (at + 4 <= bytes.size() && bytes[at] == 0xff) {
+  while (at + 4 <= bytes.size()) {
     const std::uint8_t marker = bytes[at + 1];
-    if (marker == 0xff) {  // filling
+    if (bytes[at] != 0xff || marker == 0xff || marker == 0) {  // passed over by decoders, too
       ++at;
       continue;
     }
@@ -131,9 +142,7 @@ void read_png(Bytes bytes, ImageFacts& facts) {
     const Bytes chunk = bytes.subspan(at + 8, length);
     if (starts_with(bytes, "IDAT", at + 4)) break;
     if (starts_with(bytes, "IHDR", at + 4) && length >= 8) {
-      constexpr std::uint32_t most = 1U << 30U;
-      facts.size = ImageSize{static_cast<int>(std::min(most, big_endian(chunk, 0, 4))),
-                             static_cast<int>(std::min(most, big_endian(chunk, 4, 4)))};
+      facts.size = ImageSize{side(big_endian(chunk, 0, 4)), side(big_endian(chunk, 4, 4))};
     }
     if (starts_with(bytes, "eXIf", at + 4)) take_exif(chunk, facts);
     if (starts_with(bytes, "iCCP", at + 4)) facts.profile = inflated_profile(chunk);
@@ -146,6 +155,21 @@ void read_png(Bytes bytes, ImageFacts& facts) {
   if (says_srgb || !facts.profile.empty()) facts.gamma.reset();
 }
 
+/// Two numbers behind the length of the header; of the newer one the height is negative where the
+/// first row is the upper one.
+void read_bmp(Bytes bytes, ImageFacts& facts) {
+  constexpr std::size_t header = 14, old_length = 12;
+  if (bytes.size() < header + old_length) return;
+  if (little_endian(bytes, header, 4) == old_length) {
+    facts.size = ImageSize{side(little_endian(bytes, header + 4, 2)),
+                           side(little_endian(bytes, header + 6, 2))};
+    return;
+  }
+  const std::uint32_t height = little_endian(bytes, header + 8, 4);
+  facts.size = ImageSize{side(little_endian(bytes, header + 4, 4)),
+                         side(height >> 31U != 0 ? 0 - height : height)};
+}
+
 void read_webp(Bytes bytes, ImageFacts& facts) {
   std::size_t at = 12;
   while (at + 8 <= bytes.size()) {
@@ -154,6 +178,10 @@ void read_webp(Bytes bytes, ImageFacts& facts) {
                                std::size_t{bytes[at + 7]} << 24U;
     if (length > bytes.size() - at - 8) break;
     const Bytes chunk = bytes.subspan(at + 8, length);
+    if (starts_with(bytes, "VP8X", at) && length >= 10) {
+      facts.size =
+          ImageSize{side(little_endian(chunk, 4, 3) + 1), side(little_endian(chunk, 7, 3) + 1)};
+    }
     if (starts_with(bytes, "ICCP", at)) facts.profile.assign(chunk.begin(), chunk.end());
     if (starts_with(bytes, "EXIF", at)) {
       constexpr std::string_view exif("Exif\0\0", 6);
@@ -178,8 +206,12 @@ ImageFacts read_image_facts(Bytes bytes) {
     case ImageKind::webp:
       read_webp(bytes, facts);
       break;
+    case ImageKind::bmp:
+      read_bmp(bytes, facts);
+      break;
     case ImageKind::tiff: {
       take_exif(bytes, facts);
+      facts.size = tiff_size(bytes);
       const auto profile = tiff_profile(bytes);
       facts.profile.assign(profile.begin(), profile.end());
       break;

@@ -18,7 +18,7 @@ enum class ImageKind { jpeg, png, tiff, bmp, webp, heif, avif, jpeg_xl, gif, raw
 
 struct ImageFacts {
   ImageKind kind = ImageKind::unknown;
-  std::optional<ImageSize> size;      ///< of JPEG and PNG: stored pixels
+  std::optional<ImageSize> size;      ///< stored pixels, where the headers say
   int channels = 0;                   ///< of JPEG: 1, 3 or 4; else 0
   Orientation orientation;            ///< EXIF
   std::vector<std::uint8_t> profile;  ///< ICC profile; empty where there is none

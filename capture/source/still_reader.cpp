@@ -15,9 +15,15 @@ namespace {
 
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
 constexpr int kMostSide_px = 1 << 15;
+/// Of one byte: zlib packs 1032 to 1, and a byte may hold eight pixels. No other kind packs more.
+constexpr std::uint64_t kMostPixelsOfAByte = 8 * 1032;
 
 core::Error unreadable(const std::filesystem::path& path, const std::string& fault) {
   return core::bad_input(path, fault, "check that it is complete, or leave it out");
+}
+
+core::Error cut_short(const std::filesystem::path& path) {
+  return unreadable(path, "cannot be read as an image: it is cut short or damaged");
 }
 
 std::vector<std::uint8_t> all_bytes(const std::filesystem::path& path) {
@@ -31,27 +37,33 @@ std::vector<std::uint8_t> all_bytes(const std::filesystem::path& path) {
 }
 
 /// Refuses what the headers show already: before memory is asked for.
-void check_headers(const std::filesystem::path& path, const ImageFacts& facts) {
+void check_headers(const std::filesystem::path& path, const ImageFacts& facts,
+                   std::uint64_t bytes) {
   if (const auto kind = unreadable_kind(facts.kind)) {
     throw core::bad_input(path, "is " + kind->name + ", which is not read", kind->remedy);
+  }
+  // OpenCV would look for a decoder among many, and DICOM's ends the program over a damaged file.
+  if (facts.kind == ImageKind::unknown) {
+    throw unreadable(path, "is no JPEG, PNG, TIFF, BMP or WebP");
   }
   if (facts.kind == ImageKind::jpeg && facts.channels == 4) {
     throw core::bad_input(path, "has CMYK colours, as for print", "convert it to RGB");
   }
-  if (facts.size && (facts.size->width_px < 1 || facts.size->height_px < 1 ||
-                     facts.size->width_px > kMostSide_px || facts.size->height_px > kMostSide_px)) {
+  if (!facts.size) return;
+  const auto [width_px, height_px] = *facts.size;
+  if (width_px < 1 || height_px < 1 || width_px > kMostSide_px || height_px > kMostSide_px) {
     throw unreadable(path, "cannot be read as an image");
   }
+  const auto pixels = static_cast<std::uint64_t>(width_px) * static_cast<std::uint64_t>(height_px);
+  if (pixels > kMostPixelsOfAByte * bytes) throw cut_short(path);
 }
 
 cv::Mat decoded(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes,
                 const ImageFacts& facts) {
   cv::Mat image;
-  if (facts.kind == ImageKind::jpeg && facts.size) {
+  if (facts.kind == ImageKind::jpeg) {
     // OpenCV would fill the missing half of a picture with grey and say nothing.
-    if (!decode_jpeg(bytes, *facts.size, image)) {
-      throw unreadable(path, "cannot be read as an image: it is cut short or damaged");
-    }
+    if (!facts.size || !decode_jpeg(bytes, *facts.size, image)) throw cut_short(path);
     return image;
   }
   try {
@@ -75,7 +87,7 @@ cv::Mat StillReader::read(const std::filesystem::path& path, std::optional<Image
   }
   const std::vector<std::uint8_t> bytes = all_bytes(path);
   const ImageFacts facts = read_image_facts(bytes);
-  check_headers(path, facts);
+  check_headers(path, facts, bytes.size());
 
   // Sizes first: they are told by the headers of most kinds, before memory is asked for.
   const auto choose = [&](const ImageSize& stored) {

@@ -154,8 +154,9 @@ SHEEN_FOR_EVERY_PROCESSOR
 std::size_t best_gain(const float* r, const float* g, const float* b, const float* remainder,
                       std::size_t count, float least) {
   using Indices = std::int32_t __attribute__((vector_size(kRowGroup * sizeof(std::int32_t))));
-  const auto at = [](const float* numbers, std::size_t k)
-                      SHEEN_INLINE_LAMBDA { return *reinterpret_cast<const Group*>(numbers + k); };
+  const auto at = [](const float* numbers, std::size_t k) SHEEN_INLINE_LAMBDA -> const Group& {
+    return *reinterpret_cast<const Group*>(numbers + k);
+  };
   // The best of every place in the groups, then the best of these.
   Group greatest{};
   Indices where = static_cast<std::int32_t>(count) + Indices{};

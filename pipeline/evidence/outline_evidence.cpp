@@ -33,6 +33,8 @@ constexpr double kSigmas = 8;
 constexpr double kMisplaced_px = 1;   // less than a pixel harms nobody
 constexpr double kSeenShift = 0.022;  // of the radius
 constexpr double kSeenGrowth = 0.02;
+constexpr double kLeastAgreement = 0.24;
+constexpr double kAgreeing_px = 2, kAgreeing = 0.01;  // or of the radius
 
 using Matrix = OutlineEvidence::Matrix;
 using Vector = OutlineEvidence::Vector;
@@ -173,6 +175,23 @@ std::optional<OutlineEvidence::Misplacement> OutlineEvidence::misplacement() con
   return found;
 }
 
+double OutlineEvidence::agreement() const {
+  const auto placed = misplacement();
+  if (!placed) return 1;
+  std::vector<double> shares;
+  for (const View& view : views_.items()) {
+    if (view.points == 0) continue;
+    const double reach_px = std::max(kAgreeing_px, kAgreeing * radius_m_ * view.px_per_m);
+    const auto agreeing = std::ranges::count_if(view.matches, [&](const Match& match) {
+      return std::abs(off_px(match, placed->unknowns)) < reach_px;
+    });
+    shares.push_back(static_cast<double>(agreeing) / view.points);
+  }
+  const auto quartile = shares.begin() + static_cast<std::ptrdiff_t>(3 * shares.size() / 4);
+  std::ranges::nth_element(shares, quartile);
+  return *quartile;
+}
+
 std::optional<OutlineEvidence::Jump> OutlineEvidence::jump() const {
   std::vector<const View*> views;
   for (const View& view : views_.items()) {
@@ -253,6 +272,14 @@ std::vector<Finding> OutlineEvidence::findings() const {
     return size_m > share * radius_m_ && size_m * scale > kMisplaced_px &&
            size_m > kSigmas * sigma_m;
   };
+  if (agreement() < kLeastAgreement) {
+    findings.push_back(
+        {"mesh-mismatch",
+         "the object's outline in the images is not its mesh's: the mesh is turned (is y up in "
+         "its file?), far from its place or another object's, or the poses are wrong; check its "
+         "axes and \"T_stage_object\" in session.json"});
+    return findings;
+  }
   const auto moved = jump();
   if (moved && is_seen(moved->shift_m.norm(), moved->sigma_m, kSeenShift)) {
     findings.push_back(

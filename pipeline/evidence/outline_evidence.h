@@ -18,7 +18,7 @@ namespace sheen::pipeline {
 
 /// Where the images have the object's outline, against where mesh and pose put it: a mesh of
 /// another size or place is off in all views alike, an object that was moved is off from some frame
-/// on.
+/// on, and a mesh of another shape, or turned, cannot be placed so that it fits.
 class OutlineEvidence {
  public:
   /// `mesh` must outlive this.
@@ -55,6 +55,11 @@ class OutlineEvidence {
     double residual_px = 0;     ///< median distance that is left
   };
   [[nodiscard]] std::optional<Misplacement> misplacement() const;
+
+  /// Share of the mesh's outline, placed as well as `misplacement` can, along which the image has
+  /// one, too: of the view at the upper quartile, so that half of the views may be disturbed. 1
+  /// where there are too few views to say.
+  [[nodiscard]] double agreement() const;
 
   /// A shift that begins with one frame.
   struct Jump {

@@ -65,6 +65,24 @@ TEST_F(Walk, AVideoThatCannotBeCompletedLeavesNothing) {
   EXPECT_TRUE(std::filesystem::exists(video));
 }
 
+TEST_F(Walk, WhatCannotBeReadIsNamedAsItWasGiven) {
+  const auto pictures = folder_.path() / "pictures";
+  std::filesystem::create_directory(pictures);
+  const auto expect_refused = [&](const std::filesystem::path& source, const std::string& line) {
+    const ProgramRun run = run_sheen({"replay", source, "-o", model_, "--quiet"});
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(run.standard_error, "sheen: " + line + "\n");
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / "model"));
+  };
+  const std::string one = pictures / "one.jpg";
+  write_file(one, "");
+  expect_refused(one, one + ": is one picture; name the folder with all pictures, or a video");
+  expect_refused(pictures, one + ": is empty; check that it is complete, or leave it out");
+  const std::string video = folder_.path() / "empty.mp4";
+  write_file(video, "");
+  expect_refused(video, video + ": cannot be decoded as a video; check that it is complete");
+}
+
 TEST_F(Walk, TooFewFramesDoNotTellTheCamera) {
   forget("camera");
   const ProgramRun run = run_sheen({"replay", session_, "-o", model_, "--end", "3", "--quiet"});

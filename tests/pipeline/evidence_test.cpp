@@ -273,6 +273,22 @@ TEST(OutlineEvidence, PlaceIsMeasured) {
   EXPECT_EQ(causes(evidence.findings()), Causes{"mesh-place"});
 }
 
+// Four times as long as thick: upright in the images, lying in its file.
+TEST(OutlineEvidence, AMeshThatIsTurnedIsSaid) {
+  const auto stretched = [](int axis) {
+    core::Mesh mesh = drop(0.5, Eigen::Vector3d::Zero());
+    for (auto& position : mesh.positions) position[axis] *= 4;
+    return mesh;
+  };
+  const core::Mesh lying = stretched(1);
+  const auto turned = outlines_of(lying, [&](int) { return stretched(2); });
+  const auto right = outlines_of(lying, [&](int) { return lying; });
+  EXPECT_GT(right.agreement(), 0.9);
+  EXPECT_LT(turned.agreement(), 0.12);
+  EXPECT_EQ(causes(turned.findings()), Causes{"mesh-mismatch"});
+  EXPECT_TRUE(right.findings().empty());
+}
+
 TEST(OutlineEvidence, TheFrameAtWhichTheObjectMovedIsFound) {
   const core::Mesh mesh = drop(1, Eigen::Vector3d::Zero());
   const Eigen::Vector3d shift(0.004, 0.003, 0);
