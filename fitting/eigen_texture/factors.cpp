@@ -28,12 +28,15 @@ constexpr int kSweeps = 12;
 VectorXf ridge_regression(const MatrixXf& rows, const VectorXf& value, const VectorXf& weight,
                           const VectorXf& ridge) {
   if (rows.size() == 0) return VectorXf::Zero(rows.cols());  // no bases yet, or nothing seen
-  const MatrixXf weighted = weight.cwiseSqrt().asDiagonal() * rows;
-  MatrixXf normal = MatrixXf::Zero(rows.cols(), rows.cols());
+  // The ridge may be ten digits below the sums.
+  const MatrixXd weighted = (weight.cwiseSqrt().asDiagonal() * rows).cast<double>();
+  MatrixXd normal = MatrixXd::Zero(rows.cols(), rows.cols());
   normal.selfadjointView<Eigen::Lower>().rankUpdate(weighted.transpose());
-  normal.diagonal() += ridge;
-  const VectorXf right = rows.transpose() * weight.cwiseProduct(value);
-  const VectorXf solution = normal.selfadjointView<Eigen::Lower>().ldlt().solve(right);
+  normal.diagonal() += ridge.cast<double>();
+  const VectorXd right =
+      weighted.transpose() * weight.cwiseSqrt().cwiseProduct(value).cast<double>();
+  const VectorXf solution =
+      normal.selfadjointView<Eigen::Lower>().ldlt().solve(right).cast<float>();
   return solution.allFinite() ? solution : VectorXf::Zero(rows.cols());
 }
 

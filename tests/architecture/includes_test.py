@@ -31,7 +31,8 @@ LIBRARIES = {
     r"GL/|EGL/|OSMesa|epoxy": {"render"},
     r"CLI/": {"app/command_line", "bench"},
     r"apriltag/|opencv2/(calib3d|videoio|aruco)": {"capture", "bench/micro"},
-    r"embree3/|draco/|meshoptimizer|libqhull": {"core"},
+    r"embree3/|draco/|libqhull": {"core"},
+    r"meshoptimizer": {"core", "bench"},  # bench decimates meshes, the program does not
     r"libav|libsw|lcms2|pugixml": {"capture"},
     r"nlohmann/": set(MODULES) - {"pipeline"},
 }
