@@ -2,6 +2,7 @@
 #pragma once
 
 #include "app/preview/camera_view.h"
+#include "app/preview/commands.h"
 #include "app/preview/model_feed.h"
 #include "app/preview/model_view.h"
 #include "app/preview/object_painter.h"
