@@ -189,12 +189,12 @@ void WalkWindow::show_shape_state() const {
   } else if (!news_.hull) {
     wrapped(theme::kQuiet, "Appears once the object was seen from eight directions");
   } else if (news_.is_settled) {
-    const std::string doubt = subject_.model != nullptr ? subject_.model->doubt() : "";
     wrapped(theme::kGood, "Settled: once round, the light field begins");
-    if (!doubt.empty()) wrapped(theme::kWarning, doubt);
   } else {
     wrapped(theme::kQuiet, "Growing: go all the way round, low views too");
   }
+  const std::string doubt = subject_.model != nullptr ? subject_.model->doubt() : "";
+  if (!doubt.empty()) wrapped(theme::kWarning, doubt);
 }
 
 void WalkWindow::show_light_field_state() const {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "app/start/start_commands.h"
 
+#include "capture/calibration/calibration_images.h"
+#include "core/text/lower_case.h"
+
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -15,7 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 7> kFilms{".mp4", ".mov",  ".mkv", ".avi",
                                                  ".m4v", ".webm", ".mts"};
-constexpr std::array<std::string_view, 4> kPictures{".jpg", ".jpeg", ".png", ".tif"};
 
 bool is_there(const fs::path& path) {
   std::error_code no_throw;
@@ -23,22 +25,14 @@ bool is_there(const fs::path& path) {
 }
 
 std::string ending_of(const fs::path& path) {
-  std::string ending = path.extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
-
-template <std::size_t kCount>
-bool is_one_of(const std::array<std::string_view, kCount>& endings, const fs::path& path) {
-  return std::ranges::find(endings, ending_of(path)) != endings.end();
+  return core::lower_case(path.extension().string());
 }
 
 bool holds_pictures(const fs::path& folder) {
   std::error_code no_throw;
   for (fs::directory_iterator entry(folder, no_throw), end; !no_throw && entry != end;
        entry.increment(no_throw)) {
-    if (is_one_of(kPictures, entry->path())) return true;
+    if (capture::is_picture_name(entry->path())) return true;
   }
   return false;
 }
@@ -109,7 +103,7 @@ std::optional<Arguments> open_arguments(const fs::path& path) {
   if (fs::is_regular_file(path, no_throw)) {
     if (ending_of(path) == ".glb") return Arguments{"view", path.string()};
     if (path.filename() == "session.json") return open_arguments(path.parent_path());
-    if (!is_one_of(kFilms, path)) return std::nullopt;
+    if (std::ranges::find(kFilms, ending_of(path)) == kFilms.end()) return std::nullopt;
     return made_and_shown(path, free_model(path.parent_path(), path.stem().string()));
   }
   if (!fs::is_directory(path, no_throw)) return std::nullopt;

@@ -6,6 +6,7 @@
 #include "app/preview/snapshot.h"
 #include "app/preview/theme.h"
 #include "app/preview/window_layout.h"
+#include "app/start/card.h"
 #include "app/start/desktop_folders.h"
 #include "app/start/sheet_picture.h"
 #include "core/diagnostics/error.h"
@@ -28,56 +29,11 @@ constexpr float kBetween = 18;
 constexpr float kHead = 92;
 constexpr float kFoot = 84;
 constexpr float kSideStep = 0.26f;  // of the width; the capture takes what is left
-constexpr float kCardRounding = 8;
 
 constexpr double kTyping_s = 0.015;  // longest wait for an event
 
 const ImVec4 kAction{0.22f, 0.37f, 0.44f, 1};
 const ImVec4 kActionLit{0.25f, 0.43f, 0.51f, 1};
-
-void begin_card(const char* name, const ImVec2& corner, const ImVec2& size, float scale) {
-  ImGui::SetNextWindowPos(corner);
-  ImGui::SetNextWindowSize(size);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, kCardRounding * scale);
-  ImGui::Begin(name, nullptr, layout::kFixed & ~ImGuiWindowFlags_NoNav);
-  ImGui::PopStyleVar();
-}
-
-void step_title(const char* number, const char* words, const theme::Fonts& fonts) {
-  ImGui::PushFont(fonts.large);
-  text(theme::kAccent, number);
-  ImGui::SameLine();
-  text(theme::kText, words);
-  ImGui::PopFont();
-}
-
-float lines(float count) {
-  return count * ImGui::GetTextLineHeightWithSpacing();
-}
-
-/// Where the parts at a card's foot begin, y in its window: fields to fill, the command, its
-/// button.
-struct CardFoot {
-  float fields, command, button;
-};
-
-CardFoot card_foot(const Arguments& arguments, int fields) {
-  const ImGuiStyle& style = ImGui::GetStyle();
-  const std::string command = as_typed("sheen", arguments);
-  const float width = ImGui::GetContentRegionAvail().x;
-  const float high = ImGui::CalcTextSize(command.c_str(), nullptr, false, width).y;
-  CardFoot foot{};
-  foot.button = ImGui::GetWindowHeight() - style.WindowPadding.y - ImGui::GetFrameHeight();
-  foot.command = foot.button - 2 * style.ItemSpacing.y - high;
-  foot.fields = foot.command - style.ItemSpacing.y -
-                static_cast<float>(fields) * ImGui::GetFrameHeightWithSpacing();
-  return foot;
-}
-
-/// From the cursor to a place below.
-float room_above(float y) {
-  return y - ImGui::GetCursorPosY() - 2 * ImGui::GetStyle().ItemSpacing.y;
-}
 
 template <std::size_t kSize>
 void set_text(std::array<char, kSize>& text, const std::string& words) {
@@ -85,13 +41,15 @@ void set_text(std::array<char, kSize>& text, const std::string& words) {
   std::memcpy(text.data(), words.data(), std::min(words.size(), kSize - 1));
 }
 
-/// The middle of a text that is wider than there is room, left out.
-std::string fitted(std::string words, float width) {
-  if (ImGui::CalcTextSize(words.c_str()).x <= width) return words;
-  while (words.size() > 8 && ImGui::CalcTextSize((words + "\u2026").c_str()).x > width) {
-    words.pop_back();
-  }
-  return words + "\u2026";
+/// The largest size of this aspect within a rectangle.
+ImVec2 fitted(float aspect, const ImVec2& room) {
+  return {std::min(room.x, room.y * aspect), std::min(room.y, room.x / aspect)};
+}
+
+/// As ImGui names textures.
+ImTextureID name_of(const render::ImageTexture& texture) {
+  // NOLINTNEXTLINE(performance-no-int-to-ptr)
+  return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture.name()));
 }
 
 std::string failure_text(const RunningCommand& command, int exit_code) {
@@ -242,10 +200,13 @@ void StartWindow::show_sheet_step() {
   gap(0.4f);
   const Arguments arguments = board_arguments(choice_);
   const CardFoot foot = card_foot(arguments, 0);
+  const auto [sheet, is_new] = sheets_.try_emplace(choice_.paper);
+  if (is_new) sheet->second = draw_sheet(choice_.paper);
+  const ShownPicture& shown = sent(choice_.paper, sheet->second);
   const float width = ImGui::GetContentRegionAvail().x;
-  show_image(choice_.paper,
-             pictures_.contains(choice_.paper) ? cv::Mat() : draw_sheet(choice_.paper),
-             {width, room_above(foot.command)});
+  const ImVec2 size = fitted(shown.aspect, {width, room_above(foot.command)});
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 0.5f * (width - size.x));
+  ImGui::Image(name_of(*shown.texture), size);
   show_command(arguments, foot.command);
   if (step_button("Make the PDF and open it", true)) run(arguments);
 }
@@ -330,18 +291,10 @@ void StartWindow::show_camera(const CameraLook& look, const ImVec2& size) {
   list.PushClipRect(from, to, true);
   const ImVec2 room(size.x, size.y - label);
   if (!look.picture.empty()) {
-    ShownPicture& shown = pictures_[look.address];
-    if (std::exchange(shown.pixels, look.picture.data) != look.picture.data) {
-      shown.texture = std::make_unique<render::ImageTexture>(window_.gl());
-      shown.texture->upload(look.picture);
-    }
-    const auto wide = static_cast<float>(look.picture.cols);
-    const auto high = static_cast<float>(look.picture.rows);
-    const float fit = std::min(room.x / wide, room.y / high);
-    const ImVec2 at(from.x + 0.5f * (room.x - fit * wide), from.y + 0.5f * (room.y - fit * high));
-    // NOLINTNEXTLINE(performance-no-int-to-ptr): ImGui's names of textures
-    list.AddImage(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(shown.texture->name())),
-                  at, {at.x + fit * wide, at.y + fit * high});
+    const ShownPicture& shown = sent(look.address, look.picture);
+    const ImVec2 fit = fitted(shown.aspect, room);
+    const ImVec2 at(from.x + 0.5f * (room.x - fit.x), from.y + 0.5f * (room.y - fit.y));
+    list.AddImage(name_of(*shown.texture), at, {at.x + fit.x, at.y + fit.y});
   } else {
     const std::string words = look.is_due ? "Looking\u2026" : look.fault;
     const std::string shown =
@@ -382,7 +335,9 @@ void StartWindow::show_open_step() {
   for (const fs::path& path : offered) {
     ImGui::PushID(path.c_str());
     const ImVec2 from = ImGui::GetCursorPos();
-    if (ImGui::Selectable("##file", false, 0, {width, lines(2.2f)})) open(path);
+    if (ImGui::Selectable("##file", false, 0,
+                          {width, 2.2f * ImGui::GetTextLineHeightWithSpacing()}))
+      open(path);
     ImGui::SetCursorPos({from.x + 0.3f * ImGui::GetFontSize(), from.y + 2});
     text(theme::kText, fitted(path.filename().string(), width));
     ImGui::SetCursorPosX(from.x + 0.3f * ImGui::GetFontSize());
@@ -438,20 +393,14 @@ bool StartWindow::step_button(const char* label, bool is_possible) {
   return is_clicked;
 }
 
-/// Sends an image once, by its name, and shows it in the middle of a rectangle.
-void StartWindow::show_image(const std::string& key, const cv::Mat& image, const ImVec2& size) {
+/// The picture as it was sent; sends it where it is another one than before.
+const StartWindow::ShownPicture& StartWindow::sent(const std::string& key, const cv::Mat& image) {
   ShownPicture& shown = pictures_[key];
-  if (!image.empty()) {
-    shown.texture = std::make_unique<render::ImageTexture>(window_.gl());
-    shown.texture->upload(image);
-    shown.aspect = static_cast<float>(image.cols) / static_cast<float>(image.rows);
-  }
-  const ImVec2 fit(std::min(size.x, size.y * shown.aspect),
-                   std::min(size.y, size.x / shown.aspect));
-  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 0.5f * (size.x - fit.x));
-  // NOLINTNEXTLINE(performance-no-int-to-ptr): ImGui's names of textures
-  ImGui::Image(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(shown.texture->name())),
-               fit);
+  if (std::exchange(shown.pixels, image.data) == image.data) return shown;
+  shown.texture = std::make_unique<render::ImageTexture>(window_.gl());
+  shown.texture->upload(image);
+  shown.aspect = static_cast<float>(image.cols) / static_cast<float>(image.rows);
+  return shown;
 }
 
 }  // namespace sheen::app

@@ -55,12 +55,13 @@ class StartWindow {
   void show_camera(const CameraLook& look, const ImVec2& size);
   static void show_command(const Arguments& arguments, float y);
   bool step_button(const char* label, bool is_possible);
-  void show_image(const std::string& key, const cv::Mat& image, const ImVec2& size);
+  const ShownPicture& sent(const std::string& key, const cv::Mat& image);
 
   CameraAccess cameras_;
   std::filesystem::path snapshot_folder_;
   Window window_;
   std::map<std::string, ShownPicture> pictures_;  ///< by the camera's address or the paper
+  std::map<std::string, cv::Mat> sheets_;         ///< as drawn, by the paper
   std::unique_ptr<CameraLooks> looks_;            ///< null while a command runs
   std::vector<CameraLook> seen_;                  ///< by them, last
   StartChoice choice_;

@@ -175,15 +175,13 @@ std::optional<OutlineEvidence::Misplacement> OutlineEvidence::misplacement() con
   return found;
 }
 
-double OutlineEvidence::agreement() const {
-  const auto placed = misplacement();
-  if (!placed) return 1;
+double OutlineEvidence::agreement(const Misplacement& placed) const {
   std::vector<double> shares;
   for (const View& view : views_.items()) {
     if (view.points == 0) continue;
     const double reach_px = std::max(kAgreeing_px, kAgreeing * radius_m_ * view.px_per_m);
     const auto agreeing = std::ranges::count_if(view.matches, [&](const Match& match) {
-      return std::abs(off_px(match, placed->unknowns)) < reach_px;
+      return std::abs(off_px(match, placed.unknowns)) < reach_px;
     });
     shares.push_back(static_cast<double>(agreeing) / view.points);
   }
@@ -272,7 +270,8 @@ std::vector<Finding> OutlineEvidence::findings() const {
     return size_m > share * radius_m_ && size_m * scale > kMisplaced_px &&
            size_m > kSigmas * sigma_m;
   };
-  if (agreement() < kLeastAgreement) {
+  const auto placed = misplacement();
+  if (placed && agreement(*placed) < kLeastAgreement) {
     findings.push_back(
         {"mesh-mismatch",
          "the object's outline in the images is not its mesh's: the mesh is turned (is y up in "
@@ -290,7 +289,6 @@ std::vector<Finding> OutlineEvidence::findings() const {
                      1000 * moved->shift_m.norm(), moved->frame_index)});
     return findings;
   }
-  const auto placed = misplacement();
   if (!placed) return findings;
   const double growth_m = placed->unknowns[6];
   if (is_seen(std::abs(growth_m), placed->growth_sigma_m, kSeenGrowth)) {

@@ -56,10 +56,9 @@ class OutlineEvidence {
   };
   [[nodiscard]] std::optional<Misplacement> misplacement() const;
 
-  /// Share of the mesh's outline, placed as well as `misplacement` can, along which the image has
-  /// one, too: of the view at the upper quartile, so that half of the views may be disturbed. 1
-  /// where there are too few views to say.
-  [[nodiscard]] double agreement() const;
+  /// Share of the mesh's outline, placed so, along which the image has one, too: of the view at the
+  /// upper quartile, so that half of the views may be disturbed.
+  [[nodiscard]] double agreement(const Misplacement& placed) const;
 
   /// A shift that begins with one frame.
   struct Jump {

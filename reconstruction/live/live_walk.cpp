@@ -28,6 +28,7 @@ LiveWalk::LiveWalk(WalkStart start)
     : start_(std::move(start)), calibrate_at_(capture::kFewestWalkViews) {
   sight_.camera = start_.camera;
   if (start_.board) sight_.middle = middle_of(*start_.board);
+  list_missing();  // all of them
   finder_.emplace(start_.board ? *start_.board : capture::all_default_tags(), start_.camera);
 }
 
@@ -51,6 +52,10 @@ void LiveWalk::look_at(const capture::Frame& frame) {
   sight_.image = frame.image.clone();
   sight_.camera_from_board.reset();
   if (pose) sight_.camera_from_board = pose->camera_from_board;
+  list_missing();
+}
+
+void LiveWalk::list_missing() {
   sight_.missing.clear();
   for (std::size_t i = 0; i < kViewDirections; ++i) {
     if (!kept_[i]) sight_.missing.push_back(i);

@@ -74,6 +74,7 @@ class LiveWalk {
   void keep(const capture::Frame& frame, const Eigen::Isometry3d& camera_from_board,
             std::vector<capture::TagDetection> tags);
   void calibrate();
+  void list_missing();
   void use(const core::CameraModel& camera);
 
   WalkStart start_;

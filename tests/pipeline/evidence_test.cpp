@@ -283,8 +283,8 @@ TEST(OutlineEvidence, AMeshThatIsTurnedIsSaid) {
   const core::Mesh lying = stretched(1);
   const auto turned = outlines_of(lying, [&](int) { return stretched(2); });
   const auto right = outlines_of(lying, [&](int) { return lying; });
-  EXPECT_GT(right.agreement(), 0.9);
-  EXPECT_LT(turned.agreement(), 0.12);
+  EXPECT_GT(right.agreement(right.misplacement().value()), 0.9);
+  EXPECT_LT(turned.agreement(turned.misplacement().value()), 0.12);
   EXPECT_EQ(causes(turned.findings()), Causes{"mesh-mismatch"});
   EXPECT_TRUE(right.findings().empty());
 }

@@ -92,6 +92,7 @@ TEST(LiveWalk, RecognisesTheDefaultSheetByItsIds) {
   const core::CameraModel camera = capture::test::make_camera(640, 480, false);
   const capture::Board sheet = capture::default_board(capture::kDefaultSheets[0]);
   LiveWalk walk({.session = "walk", .board = std::nullopt, .camera = camera});
+  EXPECT_EQ(walk.sight().missing.size(), kViewDirections);
   // Half a second apart and 90 degrees: four directions.
   for (int i = 0; i < 4; ++i) {
     const auto pose = capture::test::look_at_board(0.4, 0.8, 1.57 * i + 0.2);
