@@ -20,12 +20,12 @@ namespace sheen::app {
 
 /// A camera that may be chosen and what it sees.
 struct CameraLook {
-  std::string address;  ///< /dev/video0, http://...
-  std::string name;
-  std::string mode;    ///< "1280x720, 30 a second"; empty: not known
-  cv::Mat picture;     ///< CV_8UC3 BGR, shared, never written to; empty: none (yet)
-  std::string fault;   ///< one line; empty: none
-  bool is_due = true;  ///< has not been looked through yet
+  std::string address = {};  ///< /dev/video0, http://...
+  std::string name = {};
+  std::string mode = {};   ///< "1280x720, 30 a second"; empty: not known
+  cv::Mat picture = {};    ///< CV_8UC3 BGR, shared, never written to; empty: none (yet)
+  std::string fault = {};  ///< one line; empty: none
+  bool is_due = true;      ///< has not been looked through yet
 };
 
 /// Who lists cameras and opens them.

@@ -19,12 +19,12 @@ namespace sheen::capture {
 /// How a V4L2 camera is to be used.
 struct V4l2CameraOptions {
   std::filesystem::path device = "/dev/video0";
-  ModeWish mode;
-  std::vector<ControlValue> controls;  ///< set before the automatics settle
-  bool lock_automatics = true;         ///< exposure, gain, white balance and focus, once settled
-  double settle_s = 1.5;               ///< >= 0, time for the automatics; their images are dropped
-  double silence_s = 5;                ///< > 0, without an image a stream counts as broken
-  double reconnect_s = 30;             ///< >= 0, how long a camera that failed may stay away
+  ModeWish mode = {};
+  std::vector<ControlValue> controls = {};  ///< set before the automatics settle
+  bool lock_automatics = true;  ///< exposure, gain, white balance and focus, once settled
+  double settle_s = 1.5;        ///< >= 0, time for the automatics; their images are dropped
+  double silence_s = 5;         ///< > 0, without an image a stream counts as broken
+  double reconnect_s = 30;      ///< >= 0, how long a camera that failed may stay away
 };
 
 /// A camera of the Linux kernel: mapped streaming of MJPEG, YUYV or NV12. A stream that breaks, or
