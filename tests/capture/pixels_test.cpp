@@ -229,8 +229,9 @@ TEST(StillReader, ReadsOrRefusesWhateverHeadersSay) {
 // fuzzing); other kinds that OpenCV knows are not promised either.
 TEST(StillReader, AsksNoDecoderOfKindsThatAreNotPromised) {
   const TemporaryFolder folder;
-  const std::string dicom =
-      std::string(128, '\0') + "DICM" + std::string("\2\0\0\0\xe4\6\7\6\7", 9);
+  std::string dicom(128, '\0');
+  dicom += "DICM";
+  dicom.append("\2\0\0\0\xe4\6\7\6\7", 9);
   for (const std::string& bytes : {dicom, std::string("P6 1 1 255 rgb"), std::string("text")}) {
     const auto path = folder.write("picture.png", bytes);
     StillReader reader;
