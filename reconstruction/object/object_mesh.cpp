@@ -11,6 +11,8 @@
 #include "reconstruction/object/refusals.h"
 #include "reconstruction/object/shape.h"
 #include "reconstruction/silhouette/segmentation.h"
+#include "reconstruction/stereo/carve_roofs.h"
+#include "reconstruction/stereo/depth_maps.h"
 #include "reconstruction/surface/marching_tetrahedra.h"
 #include "reconstruction/surface/surface_mesh.h"
 #include "reconstruction/views/depth_image.h"
@@ -31,6 +33,8 @@ constexpr float kOutlineBlur_px = 1.5F;  // by which one outline may lie wrong
 constexpr int kCoarseCells = 72;         // along the longest side
 constexpr std::size_t kMostViews = 120;  // of the last pass
 constexpr int kFineCells = 160;
+constexpr std::size_t kStereoViews = 40;
+constexpr float kStereoObject_px = 300;  // its longest side, at most
 constexpr float kSmoothLimit_cells = 3;
 constexpr int kSmoothRounds = 2;      // against the steps of pixels
 constexpr float kFootRounded_px = 1;  // by the triangles at the foot's edge
@@ -63,6 +67,14 @@ class Measurement {
  private:
   [[nodiscard]] ViewSet coarse_views() const {
     return reduced(views_, kCoarseViews, kCoarseWidth_px, threads_);
+  }
+
+  /// In which the object is as large as stereo needs: more pixels cost time and show little more.
+  [[nodiscard]] ViewSet stereo_views(const Eigen::AlignedBox3f& object) const {
+    const float object_px = object.sizes().maxCoeff() / pixel_at(object.center());
+    const float share = std::min(1.0F, kStereoObject_px / object_px);
+    const auto width_px = static_cast<int>(share * static_cast<float>(views_.camera.width_px()));
+    return reduced(views_, kStereoViews, std::max(1, width_px), threads_);
   }
 
   [[nodiscard]] Shape find_coarse_shape() {
@@ -103,6 +115,8 @@ class Measurement {
                 .guesses_wrong = one_in(kOneGuessIn, views_.views.size()),
                 .blur_px = kOutlineBlur_px},
                &coarse.grid, 2.5F * coarse.grid.cell_m(), threads_, grid);
+    carve_roofs(find_depths(stereo_views(coarse.box), march_tetrahedra(grid), threads_, progress_),
+                kSmoothLimit_cells * cell, threads_, grid);
     grid.smooth(kSmoothLimit_cells * cell, kSmoothRounds, threads_);
     grid.cut_below(foot_m);  // last, so that the foot's edge stays sharp
     return only_shape(session_, board_, std::move(grid));
