@@ -13,6 +13,7 @@
 #include "reconstruction/silhouette/segmentation.h"
 #include "reconstruction/stereo/carve_roofs.h"
 #include "reconstruction/stereo/depth_maps.h"
+#include "reconstruction/stereo/proven_carving.h"
 #include "reconstruction/surface/marching_tetrahedra.h"
 #include "reconstruction/surface/surface_mesh.h"
 #include "reconstruction/views/depth_image.h"
@@ -33,7 +34,7 @@ constexpr float kOutlineBlur_px = 1.5F;  // by which one outline may lie wrong
 constexpr int kCoarseCells = 72;         // along the longest side
 constexpr std::size_t kMostViews = 120;  // of the last pass
 constexpr int kFineCells = 160;
-constexpr std::size_t kStereoViews = 40;
+constexpr std::size_t kStereoViews = 48;
 constexpr float kStereoObject_px = 300;  // its longest side, at most
 constexpr float kSmoothLimit_cells = 3;
 constexpr int kSmoothRounds = 2;      // against the steps of pixels
@@ -115,11 +116,19 @@ class Measurement {
                 .guesses_wrong = one_in(kOneGuessIn, views_.views.size()),
                 .blur_px = kOutlineBlur_px},
                &coarse.grid, 2.5F * coarse.grid.cell_m(), threads_, grid);
-    carve_roofs(find_depths(stereo_views(coarse.box), march_tetrahedra(grid), threads_, progress_),
-                kSmoothLimit_cells * cell, threads_, grid);
+    carve_what_stereo_shows(coarse.box, grid);
     grid.smooth(kSmoothLimit_cells * cell, kSmoothRounds, threads_);
     grid.cut_below(foot_m);  // last, so that the foot's edge stays sharp
     return only_shape(session_, board_, std::move(grid));
+  }
+
+  /// Roofs that no silhouette shows.
+  void carve_what_stereo_shows(const Eigen::AlignedBox3f& object, DistanceGrid& grid) const {
+    const DistanceGrid hull = grid;
+    const DepthMaps maps =
+        find_depths(stereo_views(object), march_tetrahedra(hull), threads_, progress_);
+    carve_roofs(maps, kSmoothLimit_cells * grid.cell_m(), threads_, grid);
+    keep_proven_carving(maps, hull, threads_, grid);
   }
 
   /// What the refinement reads of the silhouettes.

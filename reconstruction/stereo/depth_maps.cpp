@@ -37,7 +37,7 @@ std::vector<const StraightView*> neighbours(const std::vector<StraightView>& vie
   for (std::size_t v = 0; v < views.size(); ++v) {
     const float cosine = std::clamp(direction(of).dot(direction(v)), -1.0F, 1.0F);
     const float angle = kDegrees * std::acos(cosine);
-    if (v == of || angle < kLeastAngle || angle > kMostAngle) continue;
+    if (v == of || is_judge(v) || angle < kLeastAngle || angle > kMostAngle) continue;
     order.emplace_back(std::abs(angle - kBestAngle), v);
   }
   std::ranges::sort(order);
@@ -52,7 +52,8 @@ cv::Mat depth_below(const std::vector<StraightView>& views, std::size_t v,
                     const Eigen::AlignedBox3f& box, float pixel_m) {
   const StraightView& view = views[v];
   const auto others = neighbours(views, v, box.center());
-  if (others.size() < kLeastNeighbours) return cv::Mat(view.hull.size(), CV_32FC1, cv::Scalar(0));
+  if (is_judge(v) || others.size() < kLeastNeighbours)
+    return cv::Mat(view.hull.size(), CV_32FC1, cv::Scalar(0));
   SweptRange range;
   range.step_m = kStep_px * pixel_m;
   range.nearest = view.hull - kInFront_steps * range.step_m;
@@ -74,7 +75,7 @@ cv::Mat confirmed(const DepthMaps& maps, const std::vector<cv::Mat>& swept, std:
       const Eigen::Vector3f point = view.project.eye() + row[x] * (view.ray_of_pixel * pixel);
       int agreeing = 0;
       for (std::size_t v = 0; v < swept.size(); ++v) {
-        if (v == of) continue;
+        if (v == of || is_judge(v)) continue;
         const auto seen = maps.views[v].project(point);
         if (!seen || !maps.views[v].project.in_image(seen, 0)) continue;
         const float other = swept[v].at<float>(static_cast<int>(std::lround(seen.y_px)),
