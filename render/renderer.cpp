@@ -30,7 +30,7 @@ std::unique_ptr<Renderer> make_image_renderer(Context& context, const core::Mesh
     return make_view_texture_renderer(mesh, *texture, threads);
   }
   if (const auto* billboards = dynamic_cast<const fitting::billboard::Billboards*>(&light_field)) {
-    return make_billboard_renderer(*billboards, threads);
+    return make_billboard_renderer(context, *billboards, threads);
   }
   if (const auto* spaces =
           dynamic_cast<const fitting::multi_eigenspace::MultiEigenspace*>(&light_field)) {

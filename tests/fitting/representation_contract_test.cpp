@@ -7,6 +7,7 @@
 #include "fitting/model_file/model_part.h"
 #include "fitting/patch_light_field.h"
 #include "fitting/undo/undoable_fitter.h"
+#include "render/billboard/billboard_renderer.h"
 #include "render/context/context.h"
 #include "render/depth_quads/quad_renderer.h"
 #include "render/renderer.h"
@@ -277,6 +278,11 @@ BothRenderers both(render::Context& context, const core::Mesh& mesh,
   if (const auto* const quads = dynamic_cast<const depth_quads::DepthQuads*>(&light_field)) {
     return {render::make_gl_quad_renderer(context, *quads, 1),
             render::make_cpu_quad_renderer(*quads, 1)};
+  }
+  if (const auto* const billboards = dynamic_cast<const billboard::Billboards*>(&light_field)) {
+    return {render::make_gl_billboard_renderer(context, *billboards,
+                                               {Eigen::Isometry3d::Identity()}, 1),
+            render::make_cpu_billboard_renderer(*billboards, 1)};
   }
   return {};
 }
