@@ -4,6 +4,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   return sheen::fuzz::read_input(bytes, size, "mesh.obj", [](const std::filesystem::path& path) {
-    sheen::core::read_mesh(path);
+    std::vector<Eigen::Vector3f> colours;
+    sheen::core::read_mesh(path, nullptr, &colours);
   });
 }

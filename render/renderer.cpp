@@ -20,17 +20,17 @@ namespace sheen::render {
 namespace {
 
 /// What draws light fields that are not made of patches: a line for each. Gives null for others.
-std::unique_ptr<Renderer> make_image_renderer(const core::Mesh& mesh,
+std::unique_ptr<Renderer> make_image_renderer(Context& context, const core::Mesh& mesh,
                                               const fitting::LightField& light_field, int threads) {
   if (const auto* quads = dynamic_cast<const fitting::depth_quads::DepthQuads*>(&light_field)) {
-    return make_quad_renderer(*quads, threads);
+    return make_quad_renderer(context, *quads, threads);
   }
   if (const auto* texture =
           dynamic_cast<const fitting::view_dependent_texture::ViewTexture*>(&light_field)) {
     return make_view_texture_renderer(mesh, *texture, threads);
   }
   if (const auto* billboards = dynamic_cast<const fitting::billboard::Billboards*>(&light_field)) {
-    return make_billboard_renderer(*billboards, threads);
+    return make_billboard_renderer(context, *billboards, threads);
   }
   if (const auto* spaces =
           dynamic_cast<const fitting::multi_eigenspace::MultiEigenspace*>(&light_field)) {
@@ -68,7 +68,7 @@ std::unique_ptr<Renderer> make_renderer(Context& context, const core::Mesh& mesh
           dynamic_cast<const fitting::eigen_texture::EigenTexture*>(&light_field)) {
     return make_eigen_texture_renderer(context, mesh, *texture, threads);
   }
-  if (auto renderer = make_image_renderer(mesh, light_field, threads)) return renderer;
+  if (auto renderer = make_image_renderer(context, mesh, light_field, threads)) return renderer;
   throw core::Error(core::Error::Kind::run_failed,
                     "representation " + std::string(light_field.representation()),
                     "has no renderer in this program", "use the version of sheen that made it");

@@ -5,7 +5,6 @@
 #include "app/state/joined_model.h"
 #include "core/diagnostics/error.h"
 #include "core/mesh/read_mesh.h"
-#include "core/text/lower_case.h"
 #include "fitting/billboard/bake.h"
 #include "fitting/descriptor.h"
 #include "fitting/model_file/model_file.h"
@@ -44,8 +43,9 @@ fitting::Model read_coloured_mesh(const std::filesystem::path& path,
   model.mesh = core::read_mesh(path, &notes, &colours);
   for (const std::string& note : notes) context.note(path.string() + ": " + note);
   if (colours.empty()) {
-    throw core::bad_input(path, "has no colours at its vertices",
-                          "give a PLY whose vertices have red, green and blue, or a model (.glb)");
+    throw core::bad_input(path, "has no colours",
+                          "give a mesh with colours at its vertices (PLY, OBJ), with colours or "
+                          "materials (GLB), or a model that sheen wrote");
   }
   auto means = std::make_unique<fitting::mean::MeanLightField>(colours.size());
   for (std::size_t i = 0; i < colours.size(); ++i) means->store(i, colours[i], true);
@@ -54,8 +54,7 @@ fitting::Model read_coloured_mesh(const std::filesystem::path& path,
 }
 
 fitting::Model read_source(const std::filesystem::path& path, const CommandContext& context) {
-  const bool is_model = core::lower_case(path.extension().string()) == ".glb";
-  return is_model ? fitting::read_model(path) : read_coloured_mesh(path, context);
+  return fitting::is_model(path) ? fitting::read_model(path) : read_coloured_mesh(path, context);
 }
 
 void run_bake(const BakeOptions& options, const CommandContext& context) {
@@ -99,15 +98,17 @@ void run_bake(const BakeOptions& options, const CommandContext& context) {
 
 void add_bake_command(CommandLine& program, CommandContext& context) {
   auto options = std::make_shared<BakeOptions>();
-  Command command = program.command(
-      "bake", "Make billboards of a finished model, or of a mesh with coloured vertices");
+  Command command =
+      program.command("bake", "Make billboards of a finished model, or of a mesh with colours");
   command.example(
       "A light field of patches gives what sheen replay --representation billboard --baked-from\n"
       "bakes of the same one, byte by byte; any other is baked as it is drawn.\n"
       "Examples:\n"
       "  sheen bake model.glb -o billboards.glb --directions 1280\n"
       "  sheen bake statue.ply -o billboards.glb");
-  command.option("source", options->source, "Model file (.glb), or a mesh with colours (.ply)")
+  command
+      .option("source", options->source,
+              "Model file (.glb), or a mesh with colours (.ply, .obj, .glb)")
       .required();
   command.option("-o,--output", options->output, "Model of billboards to write (.glb)")
       .required()

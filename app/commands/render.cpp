@@ -75,7 +75,8 @@ void add_turntable_options(Command command, Command what, TurntableOptions& opti
   constexpr int most_copies = 1'000'000;
   command
       .option("--copies", options.copies,
-              "Of the object in every picture of a turntable, drawn at once (multi-eigenspace)")
+              "Of the object in every picture of a turntable, drawn at once (multi-eigenspace, "
+              "billboard)")
       .range(1, most_copies)
       .type("N");
   command.option("--fps", options.fps, "Pictures a second of a turntable's video")

@@ -10,6 +10,7 @@
 #include "core/text/number.h"
 #include "exporters/upright.h"
 #include "fitting/model_file/model_file.h"
+#include "render/billboard/billboard_renderer.h"
 #include "render/multi_eigenspace/copies_renderer.h"
 #include "render/renderer.h"
 
@@ -25,8 +26,8 @@
 namespace sheen::app {
 namespace {
 
+using fitting::billboard::Billboards;
 using fitting::multi_eigenspace::MultiEigenspace;
-using fitting::multi_eigenspace::PictureFrame;
 
 constexpr int kLeastSide_px = 16, kMostSide_px = 8192;
 constexpr double kGap = 2.2;  // between the middles of copies, in radii
@@ -53,8 +54,8 @@ int copies_in_row(int count) {
 }
 
 /// A square of copies about the object's place, every one turned by the golden angle more.
-std::vector<Eigen::Isometry3d> places_of_copies(const PictureFrame& frame, int count,
-                                                const Eigen::Vector3d& up) {
+std::vector<Eigen::Isometry3d> places_of_copies(const Eigen::Vector3d& centre, double radius_m,
+                                                int count, const Eigen::Vector3d& up) {
   const int row = copies_in_row(count);
   const Eigen::Vector3d right = up.unitOrthogonal();
   const Eigen::Vector3d forward = up.cross(right);
@@ -63,22 +64,30 @@ std::vector<Eigen::Isometry3d> places_of_copies(const PictureFrame& frame, int c
   for (int i = 0; i < count; ++i) {
     const double middle = 0.5 * (row - 1);
     const Eigen::Vector3d place =
-        kGap * frame.radius_m * ((i % row - middle) * right + (i / row - middle) * forward);
-    places.emplace_back(Eigen::Translation3d(frame.centre + place) *
-                        Eigen::AngleAxisd(golden * i, up) * Eigen::Translation3d(-frame.centre));
+        kGap * radius_m * ((i % row - middle) * right + (i / row - middle) * forward);
+    places.emplace_back(Eigen::Translation3d(centre + place) * Eigen::AngleAxisd(golden * i, up) *
+                        Eigen::Translation3d(-centre));
   }
   return places;
 }
 
 std::unique_ptr<render::Renderer> renderer_of_copies(render::Context& gl,
                                                      const fitting::LightField& light_field,
-                                                     int count, const Eigen::Vector3d& up) {
-  const auto* const spaces = dynamic_cast<const MultiEigenspace*>(&light_field);
-  if (spaces == nullptr) {
-    throw UsageError("--copies is for models of multi-eigenspace, this one is of " +
-                     std::string(light_field.representation()));
+                                                     int count, const Eigen::Vector3d& up,
+                                                     int threads) {
+  if (const auto* const spaces = dynamic_cast<const MultiEigenspace*>(&light_field)) {
+    const auto& frame = spaces->frame();
+    return render::make_copies_renderer(gl, *spaces,
+                                        places_of_copies(frame.centre, frame.radius_m, count, up));
   }
-  return render::make_copies_renderer(gl, *spaces, places_of_copies(spaces->frame(), count, up));
+  if (const auto* const billboards = dynamic_cast<const Billboards*>(&light_field)) {
+    const auto& [centre, radius_m] = billboards->sphere();
+    return render::make_gl_billboard_renderer(
+        gl, *billboards,
+        places_of_copies(centre.cast<double>(), static_cast<double>(radius_m), count, up), threads);
+  }
+  throw UsageError("--copies is for models of multi-eigenspace or billboard, this one is of " +
+                   std::string(light_field.representation()));
 }
 
 bool is_video(const std::filesystem::path& path) {
@@ -129,7 +138,7 @@ void render_turntable(const std::filesystem::path& path, const std::filesystem::
   const bool one = options.copies == 1;
   const auto renderer =
       one ? render::make_renderer(*gl, model.mesh, *model.light_field, context.threads)
-          : renderer_of_copies(*gl, *model.light_field, options.copies, up);
+          : renderer_of_copies(*gl, *model.light_field, options.copies, up, context.threads);
   // In radii, to the farthest corner of the square.
   const double room = 1 + kGap * (copies_in_row(options.copies) - 1) / std::numbers::sqrt2;
   OrbitCamera camera(model.mesh, up, room);

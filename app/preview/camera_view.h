@@ -15,7 +15,8 @@ namespace sheen::app {
 /// The camera's image with the object drawn over it where the pose says it is.
 class CameraView {
  public:
-  explicit CameraView(const render::gl::Functions& gl) : image_(gl), target_(gl, true) {}
+  explicit CameraView(const render::gl::Functions& gl)
+      : image_(gl), target_(gl, render::gl::Colour::bytes) {}
 
   /// A new image and where it was taken from; no pose: nothing is drawn over it.
   void take(const cv::Mat& image, const core::CameraModel& camera,

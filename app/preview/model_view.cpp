@@ -39,7 +39,7 @@ ModelView::ModelView(const render::gl::Functions& gl, const core::Mesh& mesh,
     : mesh_(mesh),
       camera_(mesh, up, with_cameras ? kRoomForCameras : 1),
       caster_(mesh),
-      target_(gl, true) {}
+      target_(gl, render::gl::Colour::bytes) {}
 
 void ModelView::paint(ObjectPainter& painter, Layer layer, bool hastily) {
   const Eigen::Isometry3d pose = camera_.camera_from_object();

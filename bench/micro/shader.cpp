@@ -12,7 +12,6 @@
 #include "render/evaluated/evaluated_patch_shader.h"
 #include "render/gl/offscreen_target.h"
 #include "render/gl/program.h"
-#include "render/shaders/shader_text.h"
 #include "render/surface/patch_shader.h"
 #include "render/surface/surface_pass.h"
 #include "render/surface/view_block.h"
@@ -44,7 +43,7 @@ core::CameraModel camera() {
 struct Stage {
   std::unique_ptr<render::Context> context = render::make_context();
   render::gl::Functions gl = render::gl::load_functions(*context);
-  render::gl::OffscreenTarget target{gl, true};
+  render::gl::OffscreenTarget target{gl, render::gl::Colour::bytes};
 
   // Waits until everything is drawn.
   void finish() const {
@@ -84,9 +83,9 @@ class PlainColours {
       gl_.VertexArrayAttribFormat(array_.name(), attribute, 3, GL_FLOAT, GL_FALSE, 12 * attribute);
       gl_.VertexArrayAttribBinding(array_.name(), attribute, 0);
     }
+    const std::string lens = render::lens_glsl();
     const std::array<render::gl::ShaderStage, 2> stages{
-        render::gl::ShaderStage{
-            GL_VERTEX_SHADER, "plain.vert", {render::shader_text("shaders/lens.glsl"), kVertex}},
+        render::gl::ShaderStage{GL_VERTEX_SHADER, "plain.vert", {lens, kVertex}},
         render::gl::ShaderStage{GL_FRAGMENT_SHADER, "plain.frag", {kFragment}}};
     program_ = render::gl::make_program(gl_, stages);
   }

@@ -34,7 +34,8 @@ core::Mesh read_in_board_frame(const std::filesystem::path& source) {
 /// Edge collapses of least quadric error. Hard edges are joined first: collapses would open them.
 void decimate(std::size_t triangles, core::Mesh& mesh) {
   for (auto& normal : mesh.normals) normal = {0, 0, 1};
-  core::join_identical_vertices(mesh);
+  std::vector<Eigen::Vector3f> no_colours;
+  core::join_identical_vertices(mesh, no_colours);
   std::vector<unsigned> kept(3 * mesh.triangles.size());
   const std::size_t indices = meshopt_simplify(
       kept.data(), mesh.triangles.front().data(), kept.size(), mesh.positions.front().data(),
@@ -43,7 +44,7 @@ void decimate(std::size_t triangles, core::Mesh& mesh) {
   for (std::size_t i = 0; i < indices; i += 3) {
     mesh.triangles.emplace_back(kept[i], kept[i + 1], kept[i + 2]);
   }
-  core::join_identical_vertices(mesh);  // loses those that are left over
+  core::join_identical_vertices(mesh, no_colours);  // loses those that are left over
   mesh.normals.clear();
   core::complete_normals(mesh);
 }

@@ -136,6 +136,11 @@ std::size_t GltfAccessors::count(std::size_t accessor) const {
   return gltf_size(gltf_entry(gltf_.document, "accessors", accessor), "count");
 }
 
+bool GltfAccessors::has_type(std::size_t accessor, std::size_t components) const {
+  const json& type = gltf_member(gltf_entry(gltf_.document, "accessors", accessor), "type");
+  return type.is_string() && type.get_ref<const std::string&>() == type_name(components);
+}
+
 template <typename Out>
 void GltfAccessors::read_sparse(const json& sparse, unsigned component_type, bool is_normalised,
                                 std::size_t components, std::vector<Out>& values) {
@@ -165,8 +170,7 @@ void GltfAccessors::read_sparse(const json& sparse, unsigned component_type, boo
 template <typename Out>
 std::vector<Out> GltfAccessors::read(std::size_t accessor, std::size_t components) {
   const json& object = gltf_entry(gltf_.document, "accessors", accessor);
-  const json& type = gltf_member(object, "type");
-  if (!type.is_string() || type.get_ref<const std::string&>() != type_name(components)) {
+  if (!has_type(accessor, components)) {
     throw GltfFault("has an array that is not of type " + std::string(type_name(components)));
   }
   const unsigned component_type = component_type_of(object);

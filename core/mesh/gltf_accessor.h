@@ -27,6 +27,9 @@ class GltfAccessors {
 
   [[nodiscard]] std::size_t count(std::size_t accessor) const;
 
+  /// Whether its elements are of so many components, 1 to 4.
+  [[nodiscard]] bool has_type(std::size_t accessor, std::size_t components) const;
+
   /// The bytes of a buffer view and the distance of its elements, 0 where it states none.
   struct View {
     std::span<const std::byte> bytes;

@@ -2,6 +2,7 @@
 #include "core/mesh/gltf_file.h"
 
 #include "core/diagnostics/error.h"
+#include "core/mesh/gltf_colours.h"
 #include "core/mesh/gltf_compression.h"
 #include "core/mesh/gltf_nodes.h"
 #include "core/text/number.h"
@@ -49,6 +50,7 @@ void check_extensions(const json& document) {
 struct Primitive {
   std::vector<Eigen::Vector3d> positions;
   std::vector<Eigen::Vector3f> normals;  ///< empty, or one for every position
+  std::vector<Eigen::Vector3f> colours;  ///< the same
   std::vector<Eigen::Matrix<std::uint32_t, 3, 1>> triangles;
 };
 
@@ -64,8 +66,11 @@ std::vector<Eigen::Matrix<Scalar, 3, 1>> vectors_of(const std::vector<double>& n
 
 class GltfReader {
  public:
-  explicit GltfReader(const std::filesystem::path& path)
-      : gltf_(read_gltf_container(path)), accessors_(gltf_) {}
+  GltfReader(const std::filesystem::path& path, VertexColours colours)
+      : gltf_(read_gltf_container(path)),
+        accessors_(gltf_),
+        colours_(gltf_, accessors_),
+        reads_colours_(colours == VertexColours::read) {}
 
   MeshFile read() {
     check_extensions(gltf_.document);
@@ -82,6 +87,9 @@ class GltfReader {
     } else {
       mesh_.normals.clear();
     }
+    if (!mesh_.colours.empty()) {
+      mesh_.colours.resize(mesh_.positions.size(), Eigen::Vector3f::Ones());
+    }
     add_notes(has_skin);
     return std::move(mesh_);
   }
@@ -96,7 +104,10 @@ class GltfReader {
     for (const json& object : list) {
       if (!object.is_object()) throw GltfFault("has a primitive of no form");
       has_targets_ |= object.contains("targets");
-      if (auto primitive = read_primitive(object)) primitives.push_back(std::move(*primitive));
+      auto primitive = read_primitive(object);
+      if (!primitive) continue;
+      if (reads_colours_) primitive->colours = colours_.of(object, primitive->positions.size());
+      primitives.push_back(std::move(*primitive));
     }
     return meshes_.emplace(index, std::move(primitives)).first->second;
   }
@@ -149,7 +160,7 @@ class GltfReader {
     DracoPrimitive unpacked = unpack_draco(
         accessors_.view(gltf_size(draco, "bufferView")).bytes, id("POSITION"),
         ids.contains("NORMAL") ? id("NORMAL") : -1, accessors_.count(position), corners / 3);
-    Primitive primitive{std::move(unpacked.positions), std::move(unpacked.normals), {}};
+    Primitive primitive{std::move(unpacked.positions), std::move(unpacked.normals), {}, {}};
     build(unpacked.corners, 4, primitive);
     return primitive;
   }
@@ -200,6 +211,11 @@ class GltfReader {
                 : Eigen::Vector3f((turn * normal.cast<double>()).normalized().cast<float>()));
       }
     }
+    // White is what glTF's parts are that say nothing.
+    if (!primitive.colours.empty()) {
+      mesh_.colours.resize(base, Eigen::Vector3f::Ones());
+      mesh_.colours.insert(mesh_.colours.end(), primitive.colours.begin(), primitive.colours.end());
+    }
     for (const auto& triangle : primitive.triangles) {
       const bool mirrors = determinant < 0;
       mesh_.triangles.emplace_back(base + triangle[0], base + triangle[mirrors ? 2 : 1],
@@ -208,6 +224,7 @@ class GltfReader {
   }
 
   void add_notes(bool has_skin) {
+    for (const std::string& note : colours_.notes()) mesh_.notes.push_back(note);
     if (has_skin) {
       mesh_.notes.emplace_back(
           "has a skin, which is passed over: the mesh stands as it was modelled");
@@ -227,6 +244,8 @@ class GltfReader {
 
   GltfContainer gltf_;
   GltfAccessors accessors_;
+  GltfColours colours_;
+  bool reads_colours_;
   std::map<std::size_t, std::vector<Primitive>> meshes_;
   MeshFile mesh_;
   bool has_normals_ = false;
@@ -236,9 +255,9 @@ class GltfReader {
 
 }  // namespace
 
-MeshFile read_glb(const std::filesystem::path& path) {
+MeshFile read_glb(const std::filesystem::path& path, VertexColours colours) {
   try {
-    return GltfReader(path).read();
+    return GltfReader(path, colours).read();
   } catch (const GltfFault& fault) {
     throw bad_input(path, fault.what(), fault.remedy());
   }

@@ -12,7 +12,7 @@ namespace sheen::core {
 /// EXT_meshopt_compression, KHR_draco_mesh_compression, EXT_mesh_gpu_instancing, CESIUM_RTC.
 /// Extensions about materials and the like are passed over, another that the file requires is
 /// refused by its name. Skins and morph targets are passed over with a note. Throws Error
-/// (bad_input).
-MeshFile read_glb(const std::filesystem::path& path);
+/// (bad_input). Colours are as core/mesh/gltf_colours.h has them.
+MeshFile read_glb(const std::filesystem::path& path, VertexColours colours);
 
 }  // namespace sheen::core

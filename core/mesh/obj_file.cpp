@@ -28,7 +28,8 @@ std::string_view next_word(std::string_view& line) {
 
 class ObjReader {
  public:
-  explicit ObjReader(const std::filesystem::path& path) : path_(path) {}
+  ObjReader(const std::filesystem::path& path, VertexColours colours)
+      : path_(path), reads_colours_(colours == VertexColours::read) {}
 
   MeshFile read() {
     std::string text = read_file(path_);
@@ -42,6 +43,7 @@ class ObjReader {
       rest.remove_prefix(std::min(end + 1, rest.size()));
     }
     if (!has_normals_) mesh_.normals.clear();
+    add_colours();
     if (cutter_.crossing() > 0) {
       mesh_.notes.push_back(std::to_string(cutter_.crossing()) +
                             " of its polygons cross themselves; their triangles may lie wrong");
@@ -66,6 +68,7 @@ class ObjReader {
     const std::string_view keyword = next_word(line);
     if (keyword == "v") {
       positions_.push_back(read_triple(line));
+      if (reads_colours_) read_colour(line);
     } else if (keyword == "vn") {
       normals_.push_back(read_triple(line).cast<float>());
     } else if (keyword == "f" || keyword == "fo") {
@@ -76,7 +79,7 @@ class ObjReader {
     }
   }
 
-  Eigen::Vector3d read_triple(std::string_view line) {
+  Eigen::Vector3d read_triple(std::string_view& line) {
     Eigen::Vector3d triple;
     for (double& number : triple) {
       const std::string_view word = next_word(line);
@@ -85,6 +88,29 @@ class ObjReader {
       number = *value;
     }
     return triple;
+  }
+
+  /// What stands behind a position: three numbers are a colour; one, a weight, is none.
+  void read_colour(std::string_view line) {
+    Eigen::Vector3d rgb;
+    for (double& number : rgb) {
+      const auto value = parse_number(next_word(line));
+      if (!value) return;
+      number = *value;
+    }
+    colours_.resize(positions_.size() - 1, Eigen::Vector3f::Zero());
+    colours_.push_back(displayed(rgb));
+    ++coloured_;
+  }
+
+  /// Those of the vertices that faces use.
+  void add_colours() {
+    if (coloured_ == 0) return;
+    if (coloured_ < positions_.size()) {
+      mesh_.notes.emplace_back("has colours at some of its vertices only, which are passed over");
+      return;
+    }
+    for (const std::uint32_t position : position_of_) mesh_.colours.push_back(colours_[position]);
   }
 
   /// An index as written, to one from 0; 0 and what lies outside do not exist.
@@ -119,6 +145,7 @@ class ObjReader {
     }
     has_normals_ |= normal != kNoNormal;
     mesh_.positions.push_back(positions_[position]);
+    if (reads_colours_) position_of_.push_back(position);
     mesh_.normals.push_back(normal == kNoNormal ? Eigen::Vector3f(Eigen::Vector3f::Zero())
                                                 : normals_[normal]);
     return next;
@@ -142,6 +169,10 @@ class ObjReader {
   std::size_t line_ = 0;
   std::vector<Eigen::Vector3d> positions_;  ///< all `v` so far
   std::vector<Eigen::Vector3f> normals_;    ///< all `vn` so far
+  bool reads_colours_;
+  std::vector<Eigen::Vector3f> colours_;    ///< of the positions up to the last that has one
+  std::size_t coloured_ = 0;                ///< positions that have one
+  std::vector<std::uint32_t> position_of_;  ///< of every vertex of the mesh, where colours are read
   MeshFile mesh_;
   bool has_normals_ = false;
   std::unordered_map<std::uint64_t, std::uint32_t> vertices_;  ///< pair of indices -> vertex
@@ -151,8 +182,8 @@ class ObjReader {
 
 }  // namespace
 
-MeshFile read_obj(const std::filesystem::path& path) {
-  return ObjReader(path).read();
+MeshFile read_obj(const std::filesystem::path& path, VertexColours colours) {
+  return ObjReader(path, colours).read();
 }
 
 }  // namespace sheen::core

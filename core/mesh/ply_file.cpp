@@ -72,16 +72,6 @@ double white_of(PlyScalar type) {
   }
 }
 
-/// Within what a display shows; black for what is no number.
-Eigen::Vector3f displayed(const std::array<double, 3>& rgb) {
-  Eigen::Vector3f colour;
-  for (std::size_t c = 0; c < 3; ++c) {
-    colour[static_cast<Eigen::Index>(c)] =
-        static_cast<float>(rgb[c] > 0 ? std::min(rgb[c], 1.0) : 0.0);
-  }
-  return colour;
-}
-
 void read_vertices(PlyBody& body, const PlyElement& element, MeshFile& mesh) {
   std::vector<std::size_t> slots;
   for (const PlyProperty& property : element.properties) slots.push_back(slot_of(property));
@@ -106,7 +96,8 @@ void read_vertices(PlyBody& body, const PlyElement& element, MeshFile& mesh) {
       mesh.normals.emplace_back(static_cast<float>(values[3]), static_cast<float>(values[4]),
                                 static_cast<float>(values[5]));
     }
-    if (has_colours) mesh.colours.push_back(displayed({values[6], values[7], values[8]}));
+    if (has_colours)
+      mesh.colours.push_back(displayed(Eigen::Vector3d(values[6], values[7], values[8])));
   }
 }
 

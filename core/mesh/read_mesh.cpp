@@ -69,10 +69,10 @@ void check_file(const fs::path& path) {
   check_kind(path, extension);
 }
 
-MeshFile read_mesh_file(const fs::path& path) {
+MeshFile read_mesh_file(const fs::path& path, VertexColours colours) {
   const std::string extension = lower_case(path.extension().string());
   if (extension == ".ply") return read_ply(path);
-  return extension == ".obj" ? read_obj(path) : read_glb(path);
+  return extension == ".obj" ? read_obj(path, colours) : read_glb(path, colours);
 }
 
 [[noreturn]] void refuse_position(std::size_t vertex, const fs::path& path) {
@@ -175,13 +175,16 @@ Mesh read_mesh(const std::filesystem::path& path, std::vector<std::string>* note
                std::vector<Eigen::Vector3f>* colours) {
   // Load.
   check_file(path);
-  MeshFile file = read_mesh_file(path);
+  MeshFile file =
+      read_mesh_file(path, colours != nullptr ? VertexColours::read : VertexColours::unread);
   std::vector<std::string> said = std::move(file.notes);
-  if (colours != nullptr) *colours = std::move(file.colours);
+  std::vector<Eigen::Vector3f> vertex_colours;
+  if (colours != nullptr) vertex_colours = std::move(file.colours);
   Mesh mesh = rounded(std::move(file), path, said);
 
   // Repair, from the corners to the surface.
-  if (lower_case(path.extension().string()) == ".obj") join_identical_vertices(mesh);
+  if (lower_case(path.extension().string()) == ".obj")
+    join_identical_vertices(mesh, vertex_colours);
   drop_degenerate_triangles(mesh);
   if (mesh.triangles.empty()) {
     throw bad_input(path, "has no triangles", "give a surface, not a point cloud");
@@ -195,6 +198,7 @@ Mesh read_mesh(const std::filesystem::path& path, std::vector<std::string>* note
   judge_normals(mesh, said);
   complete_normals(mesh);
   if (notes != nullptr) *notes = std::move(said);
+  if (colours != nullptr) *colours = std::move(vertex_colours);
   return mesh;
 }
 

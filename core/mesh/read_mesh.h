@@ -27,9 +27,10 @@ namespace sheen::core {
 /// cameras tell (core/mesh/winding.h).
 ///
 /// `notes`, where it is given, gets one line for each thing that was passed over or is doubtful,
-/// without the file's name. `colours`, where it is given, gets those of the vertices of a PLY file,
-/// sRGB in [0, 1], and is empty where there are none. Throws Error (bad_input) for unreadable
-/// files, no triangles, NaN or infinite positions.
+/// without the file's name. `colours`, where it is given, gets those of the vertices, sRGB in [0,
+/// 1], and is empty where there are none; then vertices of an OBJ of different colours stay apart.
+/// Of a GLB they are COLOR_0 times the colour of the material and that of its picture at the
+/// vertex. Throws Error (bad_input) for unreadable files, no triangles, NaN or infinite positions.
 Mesh read_mesh(const std::filesystem::path& path, std::vector<std::string>* notes = nullptr,
                std::vector<Eigen::Vector3f>* colours = nullptr);
 

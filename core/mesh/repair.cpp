@@ -17,14 +17,16 @@ namespace {
 
 using Triangle = Eigen::Matrix<std::uint32_t, 3, 1>;
 
-/// Bit patterns of a position and, where they matter, a normal.
-using VertexKey = std::array<std::uint32_t, 6>;
+/// Bit patterns of a position and, where they matter, a normal and a colour.
+using VertexKey = std::array<std::uint32_t, 9>;
 
-VertexKey key_of(const Eigen::Vector3f& position, const Eigen::Vector3f& normal) {
+VertexKey key_of(const Eigen::Vector3f& position, const Eigen::Vector3f& normal,
+                 const Eigen::Vector3f& colour) {
   VertexKey key{};
   for (int axis = 0; axis < 3; ++axis) {
     key[static_cast<std::size_t>(axis)] = bits_of(position[axis]);
     key[static_cast<std::size_t>(axis) + 3] = bits_of(normal[axis]);
+    key[static_cast<std::size_t>(axis) + 6] = bits_of(colour[axis]);
   }
   return key;
 }
@@ -83,25 +85,30 @@ bool is_closed(const Mesh& mesh) {
   return edges == mirrored && std::adjacent_find(edges.begin(), edges.end()) == edges.end();
 }
 
-void join_identical_vertices(Mesh& mesh) {
-  const bool has_normals = !mesh.normals.empty();
-  std::unordered_map<VertexKey, std::uint32_t, BitKeyHash<6>> known;
+void join_identical_vertices(Mesh& mesh, std::vector<Eigen::Vector3f>& colours) {
+  const auto at = [](const std::vector<Eigen::Vector3f>& of, std::uint32_t vertex) {
+    return of.empty() ? Eigen::Vector3f(Eigen::Vector3f::Zero()) : of[vertex];
+  };
+  std::unordered_map<VertexKey, std::uint32_t, BitKeyHash<9>> known;
   Mesh joined;
+  std::vector<Eigen::Vector3f> joined_colours;
   for (Triangle& triangle : mesh.triangles) {
     for (std::uint32_t& corner : triangle) {
       const Eigen::Vector3f& position = mesh.positions[corner];
-      const Eigen::Vector3f normal =
-          has_normals ? mesh.normals[corner] : Eigen::Vector3f(Eigen::Vector3f::Zero());
+      const Eigen::Vector3f normal = at(mesh.normals, corner);
+      const Eigen::Vector3f colour = at(colours, corner);
       const auto next = static_cast<std::uint32_t>(joined.positions.size());
-      const auto [entry, is_new] = known.try_emplace(key_of(position, normal), next);
+      const auto [entry, is_new] = known.try_emplace(key_of(position, normal, colour), next);
       corner = entry->second;
       if (!is_new) continue;
       joined.positions.push_back(position);
-      if (has_normals) joined.normals.push_back(normal);
+      if (!mesh.normals.empty()) joined.normals.push_back(normal);
+      if (!colours.empty()) joined_colours.push_back(colour);
     }
   }
   mesh.positions = std::move(joined.positions);
   mesh.normals = std::move(joined.normals);
+  colours = std::move(joined_colours);
 }
 
 void drop_degenerate_triangles(Mesh& mesh) {

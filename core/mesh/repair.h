@@ -9,8 +9,9 @@ namespace sheen::core {
 /// vertices and positions must be finite.
 
 /// Makes one vertex of all that share exactly the same position and normal, in order of first use
-/// by a triangle; vertices that no triangle uses are lost.
-void join_identical_vertices(Mesh& mesh);
+/// by a triangle; vertices that no triangle uses are lost. `colours`, empty or one for every
+/// vertex, keep vertices of different colours apart and follow.
+void join_identical_vertices(Mesh& mesh, std::vector<Eigen::Vector3f>& colours);
 
 /// Drops triangles with a repeated corner or without area.
 void drop_degenerate_triangles(Mesh& mesh);

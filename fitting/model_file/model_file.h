@@ -28,6 +28,10 @@ std::size_t byte_size(const LightField& light_field);
 void write_model(const std::filesystem::path& path, const core::Mesh& mesh,
                  const LightField& light_field, const SeenDirections& seen = {});
 
+/// Whether a file names that extension where binary glTF files have their text: of a model that is
+/// whole or broken, not of other programs' meshes.
+bool is_model(const std::filesystem::path& path);
+
 /// Reads it back, bit by bit what was written. Throws core::Error (bad_input) for truncated,
 /// altered or foreign files.
 Model read_model(const std::filesystem::path& path);

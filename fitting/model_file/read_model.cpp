@@ -10,6 +10,7 @@
 #include "fitting/model_file/texture_image.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -246,6 +247,20 @@ Model parse_model(const std::string& file) {
 }
 
 }  // namespace
+
+bool is_model(const std::filesystem::path& path) {
+  // Length of the first chunk after twelve bytes of header; its kind before its bytes.
+  std::ifstream file(path, std::ios::binary);
+  std::array<std::uint8_t, 20> start{};
+  if (!file.read(reinterpret_cast<char*>(start.data()), start.size())) return false;
+  std::size_t length = 0;
+  for (std::size_t i = 0; i < 4; ++i) length |= std::size_t{start[12 + i]} << (8 * i);
+  std::error_code failure;
+  const auto size = static_cast<std::size_t>(std::filesystem::file_size(path, failure));
+  std::string text(std::min(length, failure ? 0 : size), '\0');
+  file.read(text.data(), static_cast<std::streamsize>(text.size()));
+  return text.find(kExtension) != std::string::npos;
+}
 
 Model read_model(const std::filesystem::path& path) {
   try {

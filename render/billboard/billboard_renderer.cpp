@@ -3,6 +3,7 @@
 
 #include "core/samples/vertex_view.h"
 #include "render/billboard/draw_frames.h"
+#include "render/gl/functions.h"
 #include "render/views/view_cache.h"
 
 #include <algorithm>
@@ -13,7 +14,6 @@ namespace sheen::render {
 namespace {
 
 using fitting::billboard::Billboards;
-using fitting::billboard::Blending;
 
 constexpr std::size_t kBytesPerMb = 1000000;
 
@@ -50,16 +50,8 @@ class BillboardRenderer final : public Renderer {
 };
 
 std::vector<PlacedFrame> BillboardRenderer::frames_for(const Eigen::Vector3f& eye) {
-  std::vector<std::uint8_t> usable(billboards_.element_count());
-  for (std::size_t i = 0; i < usable.size(); ++i) {
-    usable[i] = billboards_.frame(i).crop.empty() ? 0 : 1;
-  }
-  const Eigen::Vector3f towards = eye - billboards_.sphere().centre;
-  const auto chosen = billboards_.options().blending == Blending::nearest
-                          ? nearest_frame(billboards_.directions(), usable, towards)
-                          : frames_around(billboards_.directions(), usable, towards);
   std::vector<PlacedFrame> frames;
-  for (const auto& [i, share] : chosen) {
+  for (const auto& [i, share] : frames_towards(billboards_, eye)) {
     const std::size_t frame_idx = i;
     const auto make = [&] {
       return CachedFrame{std::make_shared<FramePyramid>(
@@ -97,8 +89,15 @@ RenderedView BillboardRenderer::render(const core::CameraModel& camera,
 
 }  // namespace
 
-std::unique_ptr<Renderer> make_billboard_renderer(const fitting::billboard::Billboards& billboards,
+std::unique_ptr<Renderer> make_billboard_renderer(Context& context, const Billboards& billboards,
                                                   int threads) {
+  if (gl::is_software(gl::load_functions(context))) {
+    return make_cpu_billboard_renderer(billboards, threads);
+  }
+  return make_gl_billboard_renderer(context, billboards, {Eigen::Isometry3d::Identity()}, threads);
+}
+
+std::unique_ptr<Renderer> make_cpu_billboard_renderer(const Billboards& billboards, int threads) {
   return std::make_unique<BillboardRenderer>(billboards, threads);
 }
 

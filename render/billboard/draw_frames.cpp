@@ -11,21 +11,13 @@
 namespace sheen::render {
 namespace {
 
+using fitting::billboard::Billboards;
 using fitting::billboard::Blending;
 using fitting::billboard::FrameCamera;
 using fitting::billboard::towards_m;
 
 /// Fewer rows of an image are not worth a thread.
 constexpr std::size_t kRowsPerThread = 16;
-/// Depths at which a ray is compared with the surface, from the front of the sphere to its back.
-/// The directions of frame and ray are near each other, so it moves by few pixels from one to the
-/// next.
-constexpr int kLayers = 16;
-/// Steps from a layer to the surface before it; each leaves a small part of what was wrong.
-constexpr int kSteps = 3;
-/// A ray whose last step was as long as this part of the radius counts half: it passes behind what
-/// the frame shows.
-constexpr float kMissed = 0.02f;
 /// Nearer angles count alike, radians.
 constexpr float kLeastAngle = 1e-3f;
 /// Frames nearer than so many sides of the hexagons that directions form are blended.
@@ -34,21 +26,8 @@ constexpr float kReach = 1.3f;
 /// A frame as the viewer of an image sees it.
 struct ViewedFrame {
   const PlacedFrame& placed;
-  Eigen::Vector3f eye;  ///< in the frame
-  Eigen::Matrix3f frame_from_viewer;
-  float level;
+  FrameInView view;
 };
-
-ViewedFrame viewed(const PlacedFrame& placed, const core::CameraModel& viewer,
-                   const Eigen::Isometry3d& camera_from_object) {
-  const FrameCamera& camera = placed.camera;
-  const Eigen::Vector3f eye = camera.in_frame(core::eye_in_object(camera_from_object));
-  const auto focal_px = static_cast<float>(viewer.intrinsics().focal_px.minCoeff());
-  const float view_pixel_m = eye.norm() / focal_px;
-  const float frame_pixel_m = 2 * camera.half_m / static_cast<float>(camera.side_px);
-  return {placed, eye, camera.axes * camera_from_object.linear().transpose().cast<float>(),
-          std::log2(std::max(view_pixel_m / frame_pixel_m, 1.0f))};
-}
 
 /// Where a ray is seen in a frame.
 struct Meeting {
@@ -58,10 +37,10 @@ struct Meeting {
 
 /// Where the ray meets the plane at distance `z` from that through the centre.
 Meeting meet(const ViewedFrame& frame, const Eigen::Vector3f& ray, float z) {
-  const float along = (z - frame.eye.z()) / ray.z();
+  const float along = (z - frame.view.eye.z()) / ray.z();
   // Written so that a ray that is none meets nothing.
   if (!(along > 0.0f && along < std::numeric_limits<float>::infinity())) return {};
-  return {frame.placed.camera.pixel(frame.eye + along * ray), frame.placed.share};
+  return {frame.placed.camera.pixel(frame.view.eye + along * ray), frame.placed.share};
 }
 
 /// The ray between two depths, the nearer one above the surface, the other one not.
@@ -71,14 +50,14 @@ Meeting meet_between(const ViewedFrame& frame, const Eigen::Vector3f& ray, float
   Meeting meeting;
   float z = farther;
   float step = 0;
-  for (int i = 0; i < kSteps; ++i) {
+  for (int i = 0; i < kStepsToSurface; ++i) {
     meeting = meet(frame, ray, z);
     const float there =
         towards_m(frame.placed.image->depth_code(meeting.place_px), camera.radius_m);
     step = there - z;
     z = std::clamp(there, farther, nearer);
   }
-  const float missed = step / (kMissed * camera.radius_m);
+  const float missed = step / (kMissedPart * camera.radius_m);
   meeting.share /= 1.0f + missed * missed;
   return meeting;
 }
@@ -92,8 +71,8 @@ Meeting meet_surface(const ViewedFrame& frame, const Eigen::Vector3f& ray) {
   float nearer = radius_m;
   bool above = true;
   bool beside = true;
-  for (int i = 1; i <= kLayers; ++i) {
-    const float z = radius_m * (1.0f - 2.0f * static_cast<float>(i) / kLayers);
+  for (int i = 1; i <= kDepthLayers; ++i) {
+    const float z = radius_m * (1.0f - 2.0f * static_cast<float>(i) / kDepthLayers);
     const Meeting meeting = meet(frame, ray, z);
     if (meeting.share == 0.0f) return {};
     const auto code = frame.placed.image->surface_code(meeting.place_px);
@@ -155,6 +134,27 @@ std::vector<FrameShare> frames_around(std::span<const Eigen::Vector3f> direction
   return around;
 }
 
+std::vector<FrameShare> frames_towards(const Billboards& billboards, const Eigen::Vector3f& eye) {
+  std::vector<std::uint8_t> usable(billboards.element_count());
+  for (std::size_t i = 0; i < usable.size(); ++i) {
+    usable[i] = billboards.frame(i).crop.empty() ? 0 : 1;
+  }
+  const Eigen::Vector3f towards = eye - billboards.sphere().centre;
+  return billboards.options().blending == Blending::nearest
+             ? nearest_frame(billboards.directions(), usable, towards)
+             : frames_around(billboards.directions(), usable, towards);
+}
+
+FrameInView frame_in_view(const FrameCamera& camera, const core::CameraModel& viewer,
+                          const Eigen::Isometry3d& camera_from_object) {
+  const Eigen::Vector3f eye = camera.in_frame(core::eye_in_object(camera_from_object));
+  const auto focal_px = static_cast<float>(viewer.intrinsics().focal_px.minCoeff());
+  const float view_pixel_m = eye.norm() / focal_px;
+  const float frame_pixel_m = 2 * camera.half_m / static_cast<float>(camera.side_px);
+  return {eye, camera.axes * camera_from_object.linear().transpose().cast<float>(),
+          std::log2(std::max(view_pixel_m / frame_pixel_m, 1.0f))};
+}
+
 DrawnFrames draw_frames(std::span<const PlacedFrame> frames, Blending blending,
                         const core::CameraModel& viewer,
                         const Eigen::Isometry3d& camera_from_object, const PixelRays& rays,
@@ -165,7 +165,7 @@ DrawnFrames draw_frames(std::span<const PlacedFrame> frames, Blending blending,
   if (frames.empty()) return drawn;
   std::vector<ViewedFrame> viewed_frames;
   for (const PlacedFrame& frame : frames) {
-    viewed_frames.push_back(viewed(frame, viewer, camera_from_object));
+    viewed_frames.push_back({frame, frame_in_view(frame.camera, viewer, camera_from_object)});
   }
   const Eigen::Vector3f centre =
       (camera_from_object * frames[0].camera.centre.cast<double>()).cast<float>();
@@ -186,11 +186,11 @@ DrawnFrames draw_frames(std::span<const PlacedFrame> frames, Blending blending,
             float greatest = 0;
             bool supported = false;
             for (const ViewedFrame& frame : viewed_frames) {
-              const Eigen::Vector3f in_frame = frame.frame_from_viewer * ray;
+              const Eigen::Vector3f in_frame = frame.view.frame_from_viewer * ray;
               const Meeting meeting = blending == Blending::nearest ? meet(frame, in_frame, 0.0f)
                                                                     : meet_surface(frame, in_frame);
               if (!(meeting.share > 0.0f)) continue;
-              sum += meeting.share * frame.placed.image->read(meeting.place_px, frame.level);
+              sum += meeting.share * frame.placed.image->read(meeting.place_px, frame.view.level);
               shares += meeting.share;
               if (meeting.share <= greatest) continue;
               greatest = meeting.share;

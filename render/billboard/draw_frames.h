@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/geometry/camera.h"
-#include "fitting/billboard/options.h"
+#include "fitting/billboard/billboards.h"
 #include "render/billboard/frame_pyramid.h"
 #include "render/views/pixel_rays.h"
 
@@ -14,6 +14,16 @@
 #include <vector>
 
 namespace sheen::render {
+
+/// Depths at which a ray is compared with the surface, from the front of the sphere to its back.
+/// The directions of frame and ray are near each other, so it moves by few pixels from one to the
+/// next.
+inline constexpr int kDepthLayers = 16;
+/// Steps from a layer to the surface before it; each leaves a small part of what was wrong.
+inline constexpr int kStepsToSurface = 3;
+/// A ray whose last step was as long as this part of the radius counts half: it passes behind what
+/// the frame shows.
+inline constexpr float kMissedPart = 0.02f;
 
 /// How much a frame counts in an image.
 struct FrameShare {
@@ -34,6 +44,20 @@ std::vector<FrameShare> nearest_frame(std::span<const Eigen::Vector3f> direction
 std::vector<FrameShare> frames_around(std::span<const Eigen::Vector3f> directions,
                                       std::span<const std::uint8_t> usable,
                                       const Eigen::Vector3f& towards_viewer);
+
+/// Those that are drawn for an eye (object frame), as the options say.
+std::vector<FrameShare> frames_towards(const fitting::billboard::Billboards& billboards,
+                                       const Eigen::Vector3f& eye);
+
+/// A frame as the viewer of an image sees it.
+struct FrameInView {
+  Eigen::Vector3f eye;  ///< in the frame, metres
+  Eigen::Matrix3f frame_from_viewer;
+  float level;  ///< of detail, FramePyramid::read
+};
+FrameInView frame_in_view(const fitting::billboard::FrameCamera& camera,
+                          const core::CameraModel& viewer,
+                          const Eigen::Isometry3d& camera_from_object);
 
 /// A frame that is drawn.
 struct PlacedFrame {

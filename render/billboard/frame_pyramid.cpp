@@ -44,7 +44,7 @@ FramePyramid::FramePyramid(const fitting::billboard::FrameImage& image, int side
   levels_.push_back(std::move(whole));
   while (levels_.back().cols > 1) {
     cv::Mat half;
-    const int side = (levels_.back().cols + 1) / 2;
+    const int side = levels_.back().cols / 2;
     cv::resize(levels_.back(), half, {side, side}, 0, 0, cv::INTER_AREA);
     levels_.push_back(std::move(half));
   }

@@ -13,8 +13,8 @@
 
 namespace sheen::render {
 
-/// A frame ready to be drawn at any size: its image and halves of it, down to a pixel. Colours are
-/// multiplied by their coverage, so that means of pixels are right at outlines.
+/// A frame ready to be drawn at any size: its image and halves of it (of 5 pixels 2), down to a
+/// pixel. Colours are multiplied by their coverage, so that means of pixels are right at outlines.
 class FramePyramid {
  public:
   FramePyramid(const fitting::billboard::FrameImage& image, int side_px);
@@ -30,6 +30,8 @@ class FramePyramid {
   /// Whether something seen in the fit contributes there.
   [[nodiscard]] bool is_supported(const Eigen::Vector2f& place_px) const;
 
+  /// CV_32FC4: what `read` reads.
+  [[nodiscard]] const std::vector<cv::Mat>& levels() const { return levels_; }
   [[nodiscard]] std::size_t byte_size() const;
 
  private:
@@ -37,11 +39,11 @@ class FramePyramid {
                                            std::size_t level) const;
 
   float side_px_;
-  std::vector<cv::Mat> levels_;  ///< CV_32FC4
-  cv::Point2f crop_px_;          ///< where the shape lies in the frame
-  cv::Mat depth_code_;           ///< CV_8UC1 of the crop
-  cv::Mat covered_;              ///< CV_8UC1 of the crop, 0 beside the object
-  cv::Mat supported_;            ///< CV_8UC1 of the crop
+  std::vector<cv::Mat> levels_;
+  cv::Point2f crop_px_;  ///< where the shape lies in the frame
+  cv::Mat depth_code_;   ///< CV_8UC1 of the crop
+  cv::Mat covered_;      ///< CV_8UC1 of the crop, 0 beside the object
+  cv::Mat supported_;    ///< CV_8UC1 of the crop
 };
 
 }  // namespace sheen::render

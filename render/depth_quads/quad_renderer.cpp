@@ -4,6 +4,7 @@
 #include "core/concurrency/parallel_for.h"
 #include "render/depth_quads/camera_choice.h"
 #include "render/depth_quads/screen_quads.h"
+#include "render/gl/functions.h"
 #include "render/views/crop_reader.h"
 #include "render/views/pixel_rays.h"
 #include "render/views/view_cache.h"
@@ -218,7 +219,14 @@ RenderedView QuadRenderer::render(const core::CameraModel& camera,
 
 }  // namespace
 
-std::unique_ptr<Renderer> make_quad_renderer(const DepthQuads& quads, int threads) {
+std::unique_ptr<Renderer> make_quad_renderer(Context& context, const DepthQuads& quads,
+                                             int threads) {
+  return gl::is_software(gl::load_functions(context))
+             ? make_cpu_quad_renderer(quads, threads)
+             : make_gl_quad_renderer(context, quads, threads);
+}
+
+std::unique_ptr<Renderer> make_cpu_quad_renderer(const DepthQuads& quads, int threads) {
   return std::make_unique<QuadRenderer>(quads, threads);
 }
 

@@ -14,6 +14,20 @@
 
 namespace sheen::render {
 
+/// Photographs nearer than this count alike, radians.
+inline constexpr double kLeastAngle = 0.01;
+/// Of quads that stand alone in depth: what they show counts where there is nothing else.
+inline constexpr float kFlierCertainty = 1e-4f;
+
+/// A cell of a photograph, enlarged, in the plane z = 1 of its camera. The quad is that square at
+/// its depth.
+struct CellQuad {
+  Eigen::Vector2d middle, along, down;  ///< of the square; its sides
+  float depth_m;
+  float certainty;         ///< how much its colour counts, kFlierCertainty to 1
+  float first_x, first_y;  ///< its upper left corner in the crop, pixels
+};
+
 /// A quad P0 + a U + b V, a and b in [0, 1], as a camera sees it. The ray r = (x, y, 1) of a pixel
 /// meets its plane where r . to_a = a * r . normal and r . to_b = b * r . normal, with
 /// normal = U x V, to_a = V x P0, to_b = P0 x U (Cramer's rule), all three negated where P0 .
@@ -46,6 +60,15 @@ struct QuadCamera {
 /// The coarsest level whose quads are at most two pixels wide in the view, or the finest.
 std::size_t choose_level(const fitting::KeptView& photograph,
                          const fitting::depth_quads::QuadView& quads, const QuadCamera& viewer);
+
+/// Depths within this part of each other are the same surface's.
+float depth_tolerance(const fitting::KeptView& photograph,
+                      const fitting::depth_quads::QuadLevel& level);
+
+/// All quads of one level of a photograph that lie within its lens model, row by row.
+std::vector<CellQuad> cell_quads(const fitting::KeptView& photograph,
+                                 const fitting::depth_quads::QuadView& quads, std::size_t level_idx,
+                                 const std::vector<Eigen::Vector2f>& nodes, double enlargement_px);
 
 /// Quads of one level of a photograph that a view may see: those in front of it, wholly within its
 /// lens model and turned towards it. Weights fall with the angle between photograph and view, and

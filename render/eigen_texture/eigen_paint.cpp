@@ -20,10 +20,10 @@ using fitting::eigen_texture::EigenTexture;
 class TexelPass {
  public:
   explicit TexelPass(const gl::Functions& gl)
-      : gl_(gl), no_attributes_(gl::make_vertex_array(gl)), target_(gl, true) {
+      : gl_(gl), no_attributes_(gl::make_vertex_array(gl)), target_(gl, gl::Colour::bytes) {
     const std::array<gl::ShaderStage, 2> stages{
         gl::ShaderStage{
-            GL_VERTEX_SHADER, "at_texels.vert", {shader_text("eigen_texture/at_texels.vert")}},
+            GL_VERTEX_SHADER, "everywhere.vert", {shader_text("shaders/everywhere.vert")}},
         gl::ShaderStage{GL_FRAGMENT_SHADER,
                         "at_texels.frag",
                         {shader_text("eigen_texture/layers.glsl"),

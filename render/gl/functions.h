@@ -14,9 +14,11 @@ namespace sheen::render::gl {
   X(PFNGLBINDFRAMEBUFFERPROC, BindFramebuffer)                         \
   X(PFNGLBINDTEXTUREUNITPROC, BindTextureUnit)                         \
   X(PFNGLBINDVERTEXARRAYPROC, BindVertexArray)                         \
+  X(PFNGLBLENDFUNCPROC, BlendFunc)                                     \
   X(PFNGLCHECKNAMEDFRAMEBUFFERSTATUSPROC, CheckNamedFramebufferStatus) \
   X(PFNGLCLEARNAMEDFRAMEBUFFERFVPROC, ClearNamedFramebufferfv)         \
   X(PFNGLCLIPCONTROLPROC, ClipControl)                                 \
+  X(PFNGLCOLORMASKPROC, ColorMask)                                     \
   X(PFNGLCOMPILESHADERPROC, CompileShader)                             \
   X(PFNGLCREATEBUFFERSPROC, CreateBuffers)                             \
   X(PFNGLCREATEFRAMEBUFFERSPROC, CreateFramebuffers)                   \
@@ -65,6 +67,7 @@ namespace sheen::render::gl {
   X(PFNGLVERTEXARRAYATTRIBBINDINGPROC, VertexArrayAttribBinding)       \
   X(PFNGLVERTEXARRAYATTRIBFORMATPROC, VertexArrayAttribFormat)         \
   X(PFNGLVERTEXARRAYATTRIBIFORMATPROC, VertexArrayAttribIFormat)       \
+  X(PFNGLVERTEXARRAYBINDINGDIVISORPROC, VertexArrayBindingDivisor)     \
   X(PFNGLVERTEXARRAYELEMENTBUFFERPROC, VertexArrayElementBuffer)       \
   X(PFNGLVERTEXARRAYVERTEXBUFFERPROC, VertexArrayVertexBuffer)         \
   X(PFNGLVIEWPORTPROC, Viewport)

@@ -24,8 +24,7 @@ Texture make_plane(const Functions& gl, GLenum format, int width_px, int height_
 
 }  // namespace
 
-OffscreenTarget::OffscreenTarget(const Functions& gl, bool with_colour)
-    : gl_(gl), with_colour_(with_colour) {}
+OffscreenTarget::OffscreenTarget(const Functions& gl, Colour kind) : gl_(gl), kind_(kind) {}
 
 GLuint OffscreenTarget::framebuffer(int width_px, int height_px) {
   if (width_px == width_px_ && height_px == height_px_) return framebuffer_.name();
@@ -39,8 +38,9 @@ GLuint OffscreenTarget::framebuffer(int width_px, int height_px) {
   Texture depth = make_plane(gl_, GL_DEPTH_COMPONENT32F, width_px, height_px);
   gl_.NamedFramebufferTexture(made.name(), GL_DEPTH_ATTACHMENT, depth.name(), 0);
   Texture colour;
-  if (with_colour_) {
-    colour = make_plane(gl_, GL_RGBA8, width_px, height_px);
+  if (kind_ != Colour::none) {
+    const GLenum format = kind_ == Colour::bytes ? GL_RGBA8 : GL_RGBA32F;
+    colour = make_plane(gl_, format, width_px, height_px);
     gl_.TextureParameteri(colour.name(), GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     gl_.TextureParameteri(colour.name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     gl_.TextureParameteri(colour.name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
@@ -58,7 +58,7 @@ GLuint OffscreenTarget::framebuffer(int width_px, int height_px) {
 }
 
 void OffscreenTarget::replace(const cv::Mat& rgba) {
-  assert(with_colour_ && rgba.type() == CV_8UC4 && rgba.isContinuous());
+  assert(kind_ == Colour::bytes && rgba.type() == CV_8UC4 && rgba.isContinuous());
   framebuffer(rgba.cols, rgba.rows);
   gl_.TextureSubImage2D(colour_.name(), 0, 0, 0, rgba.cols, rgba.rows, GL_RGBA, GL_UNSIGNED_BYTE,
                         rgba.data);

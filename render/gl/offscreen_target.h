@@ -7,17 +7,19 @@
 
 namespace sheen::render::gl {
 
-/// Framebuffer with a 32-bit float depth buffer and, if wanted, RGBA8 colour, of the size last
-/// asked for.
+/// Colour plane of a framebuffer: none, RGBA8 for images, or RGBA32F for sums.
+enum class Colour { none, bytes, floats };
+
+/// Framebuffer with a 32-bit float depth buffer and, if wanted, colour, of the size last asked for.
 class OffscreenTarget {
  public:
-  OffscreenTarget(const Functions& gl, bool with_colour);
+  OffscreenTarget(const Functions& gl, Colour kind);
 
   /// Framebuffer of this size, contents unspecified after a change of size. The context is
   /// current. Throws core::Error (run_failed) for sizes the driver cannot make.
   GLuint framebuffer(int width_px, int height_px);
 
-  /// Becomes an image, CV_8UC4 in the order R, G, B, A; for targets with colour.
+  /// Becomes an image, CV_8UC4 in the order R, G, B, A; for targets of bytes.
   void replace(const cv::Mat& rgba);
 
   /// Colour plane of the framebuffer last returned, for drawing it elsewhere; 0 without one.
@@ -25,7 +27,7 @@ class OffscreenTarget {
 
  private:
   const Functions& gl_;
-  bool with_colour_;
+  Colour kind_;
   int width_px_ = 0;
   int height_px_ = 0;
   Texture colour_;

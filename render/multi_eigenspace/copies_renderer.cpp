@@ -5,6 +5,7 @@
 #include "render/gl/offscreen_target.h"
 #include "render/gl/program.h"
 #include "render/shaders/shader_text.h"
+#include "render/views/read_view.h"
 
 #include <opencv2/core.hpp>
 
@@ -54,7 +55,7 @@ class CopiesRenderer final : public Renderer {
         gl_(gl::load_functions(context)),
         model_(model),
         scene_from_objects_(std::move(scene_from_objects)),
-        target_(gl_, true) {
+        target_(gl_, gl::Colour::bytes) {
     const std::array<gl::ShaderStage, 2> stages{
         gl::ShaderStage{
             GL_VERTEX_SHADER, "copies.vert", {shader_text("multi_eigenspace/copies.vert")}},
@@ -78,7 +79,6 @@ class CopiesRenderer final : public Renderer {
   void add_terms(const std::vector<SpaceShare>& shares);
   void list_copies(const Eigen::Isometry3d& camera_from_scene);
   void draw_copies(const core::CameraModel& camera);
-  RenderedView read_back(const core::CameraModel& camera);
 
   Context& context_;
   gl::Functions gl_;
@@ -208,25 +208,12 @@ void CopiesRenderer::draw_copies(const core::CameraModel& camera) {
   gl_.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
 }
 
-RenderedView CopiesRenderer::read_back(const core::CameraModel& camera) {
-  cv::Mat pixels(camera.height_px(), camera.width_px(), CV_8UC4);
-  gl_.ReadPixels(0, 0, pixels.cols, pixels.rows, GL_BGRA, GL_UNSIGNED_BYTE, pixels.data);
-  RenderedView view;
-  view.image.create(pixels.size(), CV_8UC3);
-  view.mask.create(pixels.size(), CV_8UC1);
-  std::array<cv::Mat, 2> planes{view.image, view.mask};
-  constexpr std::array<int, 8> from_to{0, 0, 1, 1, 2, 2, 3, 3};
-  cv::mixChannels(&pixels, 1, planes.data(), planes.size(), from_to.data(), 4);
-  view.support = view.mask.clone();
-  return view;
-}
-
 RenderedView CopiesRenderer::render(const core::CameraModel& camera,
                                     const Eigen::Isometry3d& camera_from_scene) {
   context_.make_current();
   list_copies(camera_from_scene);
   draw_copies(camera);
-  return read_back(camera);
+  return read_view(gl_, {camera.width_px(), camera.height_px()});
 }
 
 }  // namespace

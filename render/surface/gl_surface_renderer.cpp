@@ -5,17 +5,14 @@
 #include "render/surface/patch_shader.h"
 #include "render/surface/surface_layer.h"
 #include "render/surface/surface_renderer.h"
+#include "render/views/read_view.h"
 
 #include <opencv2/core.hpp>
 
-#include <array>
 #include <cassert>
 
 namespace sheen::render {
 namespace {
-
-/// Alpha as shaders/surface.frag writes it: 0 background, 128 seen, 255 seen and supported.
-constexpr std::uint8_t kSupported = 255;
 
 class GlSurfaceRenderer final : public Renderer {
  public:
@@ -24,7 +21,7 @@ class GlSurfaceRenderer final : public Renderer {
       : context_(context),
         gl_(gl::load_functions(context)),
         layer_(gl_, mesh, make_paint(gl_)),
-        target_(gl_, true),
+        target_(gl_, gl::Colour::bytes),
         reads_light_field_(reads_light_field) {}
 
   ~GlSurfaceRenderer() override { context_.make_current(); }
@@ -47,38 +44,24 @@ class GlSurfaceRenderer final : public Renderer {
 
   RenderedView render(const core::CameraModel& camera,
                       const Eigen::Isometry3d& camera_from_object) override {
-    // Draw.
     context_.make_current();
     layer_.draw(target_, camera, camera_from_object);
-
-    // Read back; four bytes per pixel, so rows need no padding.
-    pixels_.create(camera.height_px(), camera.width_px(), CV_8UC4);
-    gl_.ReadPixels(0, 0, pixels_.cols, pixels_.rows, GL_BGRA, GL_UNSIGNED_BYTE, pixels_.data);
-    if (const cv::Mat& invalid = invalid_rays_.of(camera); !invalid.empty())
-      pixels_.setTo(0, invalid);
-    return split();
-  }
-
- private:
-  [[nodiscard]] RenderedView split() const {
-    RenderedView view;
-    view.image.create(pixels_.size(), CV_8UC3);
-    cv::Mat alpha(pixels_.size(), CV_8UC1);
-    std::array<cv::Mat, 2> planes{view.image, alpha};
-    constexpr std::array<int, 8> from_to{0, 0, 1, 1, 2, 2, 3, 3};
-    cv::mixChannels(&pixels_, 1, planes.data(), planes.size(), from_to.data(), 4);
-    cv::compare(alpha, 0, view.mask, cv::CMP_GT);
-    cv::compare(alpha, kSupported, view.support, cv::CMP_EQ);
+    RenderedView view = read_view(gl_, {camera.width_px(), camera.height_px()});
+    if (const cv::Mat& invalid = invalid_rays_.of(camera); !invalid.empty()) {
+      for (cv::Mat* const plane : {&view.image, &view.mask, &view.support}) {
+        plane->setTo(0, invalid);
+      }
+    }
     return view;
   }
 
+ private:
   Context& context_;
   gl::Functions gl_;
   SurfaceLayer layer_;
   gl::OffscreenTarget target_;
   bool reads_light_field_;
   InvalidRayMask invalid_rays_;
-  cv::Mat pixels_;
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "render/surface/view_block.h"
 
 #include "core/samples/vertex_view.h"
+#include "render/shaders/shader_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -81,6 +82,26 @@ double longest_straight_segment(const core::CameraModel& camera) {
   }
   const double focal_px = camera.intrinsics().focal_px.maxCoeff();
   return std::sqrt(8 * kSagittaLimitPx / (focal_px * std::max(strongest, 1e-12)));
+}
+
+std::string lens_glsl() {
+  std::string functions =
+      "#define Real float\n#define LENS_FUNCTION\n#define LENS_ARRAY(name) float name[8]\n"
+      "#define LENS_OUT(name) out float name\n";
+  std::string choice =
+      "vec2 distort(vec2 ideal) {\n"
+      "  float k[8] = float[8](lens[0].x, lens[0].y, lens[0].z, lens[0].w,\n"
+      "                        lens[1].x, lens[1].y, lens[1].z, lens[1].w);\n"
+      "  vec2 moved = ideal;\n";
+  for (const core::LensTraits& traits : core::kLenses) {
+    const std::string name(traits.name);
+    functions += core::lens_text(name + ".lens");
+    choice += "  if (lens_kind == " + std::to_string(static_cast<int>(traits.kind)) + ") distort_" +
+              name + "(k, ideal.x, ideal.y, moved.x, moved.y);\n";
+  }
+  choice += "  return moved;\n}\n";
+  return std::string(shader_text("shaders/view_block.glsl")) + functions + choice +
+         std::string(shader_text("shaders/clip.glsl"));
 }
 
 }  // namespace sheen::render

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 
 namespace sheen::render {
 
@@ -34,5 +35,9 @@ ViewBlock make_view_block(const core::CameraModel& camera,
 /// `kSagittaLimitPx` anywhere in the image; infinity without distortion. The middle of a segment
 /// of length s lies about |D''| s^2 / 8 beside the image of its ends, D being the lens map.
 double longest_straight_segment(const core::CameraModel& camera);
+
+/// The block, the lenses of core/geometry/lens as GLSL reads them (`distort`), and the way from the
+/// camera's frame to clip space (shaders/clip.glsl).
+std::string lens_glsl();
 
 }  // namespace sheen::render

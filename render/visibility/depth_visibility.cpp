@@ -27,7 +27,7 @@ class DepthVisibility final : public core::Visibility {
         mesh_(mesh),
         gl_(gl::load_functions(context)),
         pass_(gl_, mesh),
-        target_(gl_, false) {}
+        target_(gl_, gl::Colour::none) {}
 
   ~DepthVisibility() override { context_.make_current(); }
   DepthVisibility(const DepthVisibility&) = delete;

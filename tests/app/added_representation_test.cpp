@@ -315,7 +315,7 @@ TEST_F(AddedRepresentation, IsDrawnByItsOwnRenderer) {
 
   context->make_current();
   const render::gl::Functions gl = render::gl::load_functions(*context);
-  render::gl::OffscreenTarget target(gl, true);
+  render::gl::OffscreenTarget target(gl, render::gl::Colour::bytes);
   renderer->draw(target, camera, pose);
   gl.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer(camera.width_px(), camera.height_px()));
   cv::Mat drawn(mask.size(), CV_8UC4);

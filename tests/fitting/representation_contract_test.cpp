@@ -7,7 +7,9 @@
 #include "fitting/model_file/model_part.h"
 #include "fitting/patch_light_field.h"
 #include "fitting/undo/undoable_fitter.h"
+#include "render/billboard/billboard_renderer.h"
 #include "render/context/context.h"
+#include "render/depth_quads/quad_renderer.h"
 #include "render/renderer.h"
 #include "render/surface/surface_renderer.h"
 #include "tests/fitting/photographs_for_tests.h"
@@ -262,19 +264,41 @@ TEST_P(Representation, TheOrderOfViewsDoesNotShow) {
   EXPECT_LE(found.mean, 0.5 * error);
 }
 
-// Those without patches have tests of their own where OpenGL draws them (eigen_texture_test,
+/// What draws the same by OpenGL and without; null where only one of them does.
+struct BothRenderers {
+  std::unique_ptr<render::Renderer> gl, cpu;
+};
+
+BothRenderers both(render::Context& context, const core::Mesh& mesh,
+                   const LightField& light_field) {
+  if (const auto* const patches = as_patches(light_field)) {
+    return {render::make_renderer(context, mesh, *patches),
+            render::make_reference_surface_renderer(mesh, *patches, 1)};
+  }
+  if (const auto* const quads = dynamic_cast<const depth_quads::DepthQuads*>(&light_field)) {
+    return {render::make_gl_quad_renderer(context, *quads, 1),
+            render::make_cpu_quad_renderer(*quads, 1)};
+  }
+  if (const auto* const billboards = dynamic_cast<const billboard::Billboards*>(&light_field)) {
+    return {render::make_gl_billboard_renderer(context, *billboards,
+                                               {Eigen::Isometry3d::Identity()}, 1),
+            render::make_cpu_billboard_renderer(*billboards, 1)};
+  }
+  return {};
+}
+
+// Those whose images differ by more than rounding have tests of their own (eigen_texture_test,
 // copies_gl_test).
 TEST_P(Representation, OpenGlDrawsTheReference) {
   const auto photographs = photographs_of(glossy);
   const auto fitter = fitted(*GetParam(), photographs, kAllViews);
-  const PatchLightField* const patches = as_patches(fitter->light_field());
-  if (patches == nullptr) return;
   const auto context = render::make_osmesa_context();
-  const auto gl = render::make_renderer(*context, photographs.mesh(), *patches)
-                      ->render(photographs.camera(), kElsewhere);
-  const auto cpu = render::make_reference_surface_renderer(photographs.mesh(), *patches, 1)
-                       ->render(photographs.camera(), kElsewhere);
-  EXPECT_LE(between(gl, cpu).largest, 1);
+  const auto [gl, cpu] = both(*context, photographs.mesh(), fitter->light_field());
+  if (!gl) return;
+  const auto found = between(gl->render(photographs.camera(), kElsewhere),
+                             cpu->render(photographs.camera(), kElsewhere));
+  EXPECT_GT(found.pixels, 3000u);
+  EXPECT_LE(found.largest, 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Registry, Representation, ::testing::ValuesIn(representations()),

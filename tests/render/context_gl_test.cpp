@@ -153,7 +153,7 @@ TEST_F(GlTest, LinkErrorsNameTheStages) {
 }
 
 TEST_F(GlTest, ImagesTooLargeForTheDriverAreRefused) {
-  gl::OffscreenTarget target(gl_, true);
+  gl::OffscreenTarget target(gl_, gl::Colour::bytes);
   const GLuint usable = target.framebuffer(8, 8);
   EXPECT_THROW(target.framebuffer(1 << 20, 8), core::Error);
   EXPECT_THROW(target.framebuffer(0, 8), core::Error);
