@@ -310,6 +310,19 @@ TEST(ReadMesh, ObjNormalsMakeHardEdges) {
   EXPECT_EQ(read_mesh(path).positions.size(), 6u);
 }
 
+TEST(ReadMesh, ObjBackslashesJoinLinesOfNumbersOnly) {
+  const TemporaryFolder folder;
+  // Folders of Windows end comments and names with one; the vertex after them is the first all the
+  // same. Lines keep their numbers: corner 9 stands in line 8, behind two that are one.
+  const std::string text =
+      "# from C:\\scans\\\nv 0 0 0\nv 1 \\\n0 0\nv 0 1 0\ng D:\\parts\\\nf 1 2 3\n";
+  const Mesh mesh = read_mesh(write_file(folder / "joined.obj", text));
+  ASSERT_EQ(mesh.triangles.size(), 1u);
+  EXPECT_EQ(mesh.positions[mesh.triangles[0][1]], Eigen::Vector3f(1, 0, 0));
+  EXPECT_NE(refusal(write_file(folder / "line.obj", text + "f 1 2 9\n")).find("line 8 "),
+            std::string::npos);
+}
+
 TEST(ReadMesh, SaysWhatIsWrong) {
   const TemporaryFolder folder;
   const std::string corners = "0 0 0\n1 0 0\n0 1 0\n";
