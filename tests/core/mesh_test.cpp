@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/diagnostics/error.h"
 #include "core/files/read_file.h"
+#include "core/mesh/bounds.h"
 #include "core/mesh/neighbours.h"
 #include "core/mesh/read_mesh.h"
 #include "tests/core/shapes.h"
@@ -258,6 +259,40 @@ TEST(ReadMesh, RepairsNormalsAndKeepsUnusedVertices) {
   EXPECT_LT((mesh.normals[2] - Eigen::Vector3f(0, 0.6f, 0.8f)).norm(), 1e-7f);
   EXPECT_EQ(mesh.normals[3], Eigen::Vector3f(0, 0, 1));
   EXPECT_EQ(mesh.normals[4], Eigen::Vector3f(0, 0, 1));
+}
+
+TEST(ReadMesh, VerticesWithoutTrianglesCountForNothing) {
+  const TemporaryFolder folder;
+  // Cleaned scans leave them: one far off, one that is no number, one on the surface.
+  const auto path = write_file(
+      folder / "stray.ply",
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "9000 0 0\n0 0 0\n1 0 0\n0 1 0\nnan nan nan\n0.2 0.2 0\n3 1 2 3\n");
+  std::vector<std::string> notes;
+  const Mesh mesh = read_mesh(path, &notes);
+  ASSERT_EQ(mesh.positions.size(), 6u);
+  EXPECT_EQ(bounds_of(mesh).sizes(), Eigen::Vector3f(1, 1, 0));
+  EXPECT_TRUE(mesh.offset.isZero(0));
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_TRUE(notes[0].starts_with("2 of its vertices")) << notes[0];
+}
+
+TEST(ReadMesh, PlyFacesMayComeBeforeTheirVertices) {
+  const TemporaryFolder folder;
+  const std::string vertex =
+      "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string face = "element face 1\nproperty list uchar int vertex_indices\n";
+  const std::string begin = "ply\nformat ascii 1.0\n", positions = "0 0 0\n1 0 0\n0 1 0\n";
+  const Mesh usual = read_mesh(write_file(
+      folder / "usual.ply", begin + vertex + face + "end_header\n" + positions + "3 0 1 2\n"));
+  const Mesh turned = read_mesh(write_file(
+      folder / "first.ply", begin + face + vertex + "end_header\n3 0 1 2\n" + positions));
+  EXPECT_EQ(turned.positions, usual.positions);
+  EXPECT_EQ(turned.triangles, usual.triangles);
+  EXPECT_NE(refusal(write_file(folder / "none.ply", begin + face + "end_header\n3 0 1 2\n"))
+                .find("no element vertex"),
+            std::string::npos);
 }
 
 TEST(ReadMesh, GlbKeepsVerticesAndAppliesTransforms) {
