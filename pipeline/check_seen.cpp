@@ -99,7 +99,7 @@ void refuse_other_convention(const capture::Session& session, const FrameStatist
   for (const PosedFrame& posed : frames.posed) poses.push_back(posed.camera_from_board);
   const auto convention = capture::other_convention(poses, session.camera, scene.object_in_board());
   if (!convention) return;
-  throw core::bad_input(*session.poses, "shows the object in no frame; " + convention->fault,
+  throw core::bad_input(*session.poses, "shows the object in few frames; " + convention->fault,
                         convention->remedy);
 }
 
@@ -148,7 +148,7 @@ void check_something_was_seen(const capture::Session& session, const FrameChoice
   check_something_was_posed(session, choice, frames);
   const bool has_file = takes_poses_from_file(session, choice.pose_source) && session.poses;
   if (has_file) refuse_other_stamps(session, frames);
-  if (has_file && !patches_were_seen) refuse_other_convention(session, frames, scene);
+  if (has_file) refuse_other_convention(session, frames, scene);
   if (!patches_were_seen && frames.frames_fitted + frames.frames_refused > 0) {
     throw unseen(session, frames, scene);
   }
