@@ -48,11 +48,13 @@ capture::FrameSpan span_of(const FrameStatistics& frames) {
           .last_s = frames.last_s};
 }
 
-/// Poses from a file that most frames do not find there, because its stamps count frames.
-void refuse_counting_stamps(const capture::Session& session, const FrameStatistics& frames) {
+/// Poses from a file that most frames do not find there, because its stamps count frames or are of
+/// another unit.
+void refuse_other_stamps(const capture::Session& session, const FrameStatistics& frames) {
   if (2 * static_cast<int>(frames.posed.size()) > frames.frames_read) return;
-  const auto fault =
-      capture::counting_stamps(capture::read_trajectory(*session.poses), span_of(frames));
+  const capture::Trajectory poses = capture::read_trajectory(*session.poses);
+  auto fault = capture::counting_stamps(poses, span_of(frames));
+  if (!fault) fault = capture::finer_stamps(poses, span_of(frames));
   if (!fault) return;
   throw core::bad_input(*session.poses,
                         fmt::format("gives {} of {} frames a pose: {}", frames.posed.size(),
@@ -97,7 +99,7 @@ void refuse_other_convention(const capture::Session& session, const FrameStatist
   for (const PosedFrame& posed : frames.posed) poses.push_back(posed.camera_from_board);
   const auto convention = capture::other_convention(poses, session.camera, scene.object_in_board());
   if (!convention) return;
-  throw core::bad_input(*session.poses, "shows the object in no frame; " + convention->fault,
+  throw core::bad_input(*session.poses, "shows the object in few frames; " + convention->fault,
                         convention->remedy);
 }
 
@@ -145,8 +147,8 @@ void check_something_was_seen(const capture::Session& session, const FrameChoice
                               const SessionScene& scene) {
   check_something_was_posed(session, choice, frames);
   const bool has_file = takes_poses_from_file(session, choice.pose_source) && session.poses;
-  if (has_file) refuse_counting_stamps(session, frames);
-  if (has_file && !patches_were_seen) refuse_other_convention(session, frames, scene);
+  if (has_file) refuse_other_stamps(session, frames);
+  if (has_file) refuse_other_convention(session, frames, scene);
   if (!patches_were_seen && frames.frames_fitted + frames.frames_refused > 0) {
     throw unseen(session, frames, scene);
   }

@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 6> kImageEndings{".jpg", ".jpeg", ".png",
-                                                        ".bmp", ".tif",  ".tiff"};
+constexpr std::array<std::string_view, 7> kImageEndings{".jpg", ".jpeg", ".png", ".bmp",
+                                                        ".tif", ".tiff", ".webp"};
 constexpr std::array<std::string_view, 3> kRecordings{"frames.avi", "frames.mkv", "frames.mp4"};
 
 bool is_hidden(const fs::path& path) {

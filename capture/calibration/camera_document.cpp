@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "capture/calibration/camera_document.h"
 
+#include "capture/calibration/colmap_lens.h"
 #include "core/diagnostics/error.h"
 #include "core/text/nesting.h"
 #include "core/text/number.h"
@@ -166,46 +167,39 @@ CameraDocument read_xml(const std::string& text, const std::filesystem::path& pa
   fail_unknown(path);
 }
 
-// COLMAP: CAMERA_ID MODEL WIDTH HEIGHT PARAMS..., pixels counted from the corner of the first one.
+// COLMAP: CAMERA_ID MODEL WIDTH HEIGHT PARAMS...
 
+/// Nothing for a line of another form.
 std::optional<LensRecord> colmap_camera(const std::vector<std::string>& words,
                                         const std::filesystem::path& path) {
-  if (words.size() < 5 || !core::parse_whole_number(words[0]) ||
-      !core::parse_whole_number(words[2]) || !core::parse_whole_number(words[3])) {
-    return std::nullopt;
-  }
-  LensRecord record;
-  record.width_px = static_cast<int>(std::min(*core::parse_whole_number(words[2]), 1LL << 20));
-  record.height_px = static_cast<int>(std::min(*core::parse_whole_number(words[3]), 1LL << 20));
-  std::vector<double> p;
-  for (std::size_t i = 4; i < words.size(); ++i) {
-    const auto number = core::parse_number(words[i]);
-    if (!number) return std::nullopt;
-    p.push_back(*number);
-  }
-  const std::string& model = words[1];
-  const bool has_one_focal = model == "SIMPLE_PINHOLE" || model == "SIMPLE_RADIAL" ||
-                             model == "RADIAL" || model == "SIMPLE_RADIAL_FISHEYE" ||
-                             model == "RADIAL_FISHEYE";
-  if (has_one_focal) p.insert(p.begin(), p[0]);
-  if (p.size() < 4) return std::nullopt;
-  record.focal_px = {p[0], p[1]};
-  record.principal_px = {p[2] - 0.5, p[3] - 0.5};
-  std::vector<double> k(p.begin() + 4, p.end());
-  if (model == "FULL_OPENCV" && k.size() == 8) {
-    record.distortion = k;
-  } else if (model == "OPENCV" || model == "OPENCV_FISHEYE" || model.ends_with("PINHOLE")) {
-    record.distortion = k;
-  } else if (model == "SIMPLE_RADIAL" || model == "RADIAL") {
-    k.resize(4, 0);
-    record.distortion = k;
-  } else {
+  if (words.size() < 4 || !core::parse_whole_number(words[0])) return std::nullopt;
+  const auto width_px = core::parse_whole_number(words[2]);
+  const auto height_px = core::parse_whole_number(words[3]);
+  if (!width_px || !height_px) return std::nullopt;
+  const std::string model = core::quotable(words[1]);
+  const ColmapLens* lens = find_colmap_lens(words[1]);
+  if (lens == nullptr) {
     refuse_camera_file(
-        path, "is of the camera model " + core::quotable(model) + ", which is not read",
+        path, "is of the camera model " + model + ", which is not read",
         "use OPENCV or another of COLMAP's models with radial and tangential distortion");
   }
-  if (model == "OPENCV_FISHEYE") record.kind = core::LensKind::fisheye;
-  return record;
+  std::vector<double> values;
+  for (std::size_t i = 4; i < words.size(); ++i) {
+    const auto number = core::parse_number(words[i]);
+    if (!number) {
+      refuse_camera_file(path,
+                         "holds something not a number (" + core::why_no_number(words[i]) + ")");
+    }
+    values.push_back(*number);
+  }
+  if (values.size() != lens->parameter_count()) {
+    refuse_camera_file(path, "holds " + std::to_string(values.size()) +
+                                 " parameters of the model " + model + ", which has " +
+                                 std::to_string(lens->parameter_count()));
+  }
+  constexpr long long most = 1LL << 20;
+  return colmap_record(*lens, static_cast<int>(std::clamp(*width_px, 0LL, most)),
+                       static_cast<int>(std::clamp(*height_px, 0LL, most)), values);
 }
 
 std::optional<LensRecord> read_colmap(const std::string& text, const std::filesystem::path& path) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "capture/dataset/colmap_files.h"
 
-#include "capture/calibration/lens_record.h"
+#include "capture/calibration/colmap_lens.h"
 #include "capture/dataset/colmap_bytes.h"
 #include "core/diagnostics/error.h"
 #include "core/files/read_file.h"
@@ -21,27 +21,6 @@ namespace {
 using Path = std::filesystem::path;
 using CameraIndices = std::map<long long, std::size_t>;  // COLMAP's number -> Dataset::cameras
 
-/// A camera model of COLMAP (src/colmap/sensor/models.h there): where its parameters go.
-struct ColmapLens {
-  int id;
-  std::string_view name;
-  std::size_t focals;      ///< 1: fx = fy
-  std::size_t distortion;  ///< parameters behind the principal point, in LensRecord's order
-  core::LensKind kind;
-};
-constexpr auto kRational = core::LensKind::rational;
-constexpr auto kFisheye = core::LensKind::fisheye;
-constexpr std::array kColmapLenses{
-    ColmapLens{0, "SIMPLE_PINHOLE", 1, 0, kRational},
-    ColmapLens{1, "PINHOLE", 2, 0, kRational},
-    ColmapLens{2, "SIMPLE_RADIAL", 1, 1, kRational},
-    ColmapLens{3, "RADIAL", 1, 2, kRational},
-    ColmapLens{4, "OPENCV", 2, 4, kRational},
-    ColmapLens{5, "OPENCV_FISHEYE", 2, 4, kFisheye},
-    ColmapLens{6, "FULL_OPENCV", 2, 8, kRational},
-    ColmapLens{8, "SIMPLE_RADIAL_FISHEYE", 1, 1, kFisheye},
-    ColmapLens{9, "RADIAL_FISHEYE", 1, 2, kFisheye},
-};
 // Places in the table of those that are written.
 constexpr std::size_t kPinhole = 1, kOpenCv = 4, kOpenCvFisheye = 5, kFullOpenCv = 6;
 
@@ -51,14 +30,13 @@ constexpr std::size_t kPinhole = 1, kOpenCv = 4, kOpenCvFisheye = 5, kFullOpenCv
 }
 
 const ColmapLens& lens_named(const Path& path, std::string_view name) {
-  for (const ColmapLens& lens : kColmapLenses) {
-    if (lens.name == name) return lens;
-  }
-  refuse_lens(path, std::string(name));
+  const ColmapLens* lens = find_colmap_lens(name);
+  if (lens == nullptr) refuse_lens(path, std::string(name));
+  return *lens;
 }
 
 const ColmapLens& lens_numbered(const Path& path, int id) {
-  for (const ColmapLens& lens : kColmapLenses) {
+  for (const ColmapLens& lens : colmap_lenses()) {
     if (lens.id == id) return lens;
   }
   constexpr std::array others{"FOV", "", "", "THIN_PRISM_FISHEYE", "RAD_TAN_THIN_PRISM_FISHEYE"};
@@ -71,22 +49,8 @@ core::CameraModel camera_from(const Path& path, const ColmapLens& lens, std::uin
   if (width == 0 || height == 0 || width > 65535 || height > 65535) {
     refuse_colmap(path, "has a camera whose image size is none");
   }
-  LensRecord record;
-  record.kind = lens.kind;
-  record.width_px = static_cast<int>(width);
-  record.height_px = static_cast<int>(height);
-  record.focal_px = {values[0], values[lens.focals - 1]};
-  // Counted from the corner of the first pixel (capture/dataset/dataset.h).
-  record.principal_px = {values[lens.focals] - 0.5, values[lens.focals + 1] - 0.5};
-  record.distortion.assign(values.begin() + static_cast<std::ptrdiff_t>(lens.focals) + 2,
-                           values.end());
-  // Lists of OpenCV's lenses have four entries at least.
-  if (!record.distortion.empty() && record.distortion.size() < 4) record.distortion.resize(4);
-  return camera_of(record, path);
-}
-
-std::size_t parameter_count(const ColmapLens& lens) {
-  return lens.focals + 2 + lens.distortion;
+  return camera_of(colmap_record(lens, static_cast<int>(width), static_cast<int>(height), values),
+                   path);
 }
 
 void add_camera(const Path& path, Dataset& dataset, CameraIndices& indices, long long id,
@@ -167,7 +131,7 @@ CameraIndices read_text_cameras(const Path& path, Dataset& dataset) {
     const ColmapLens& lens = lens_named(path, next_word(line));
     const auto width = static_cast<std::uint64_t>(next_whole(path, line));
     const auto height = static_cast<std::uint64_t>(next_whole(path, line));
-    std::vector<double> values(parameter_count(lens));
+    std::vector<double> values(lens.parameter_count());
     for (double& value : values) value = next_number(path, line);
     add_camera(path, dataset, indices, id, camera_from(path, lens, width, height, values));
   }
@@ -200,7 +164,7 @@ CameraIndices read_binary_cameras(const Path& path, Dataset& dataset) {
     const ColmapLens& lens = lens_numbered(path, reader.take<std::int32_t>());
     const auto width = reader.take<std::uint64_t>();
     const auto height = reader.take<std::uint64_t>();
-    std::vector<double> values(parameter_count(lens));
+    std::vector<double> values(lens.parameter_count());
     for (double& value : values) value = reader.take<double>();
     add_camera(path, dataset, indices, id, camera_from(path, lens, width, height, values));
   }
@@ -224,13 +188,13 @@ void read_binary_images(const Path& path, const CameraIndices& indices, Dataset&
 }
 
 const ColmapLens& lens_of(const core::CameraModel& camera) {
-  if (camera.intrinsics().lens == core::LensKind::fisheye) return kColmapLenses[kOpenCvFisheye];
+  if (camera.intrinsics().lens == core::LensKind::fisheye) return colmap_lenses()[kOpenCvFisheye];
   // Many programs know the smaller ones only.
   const auto& k = camera.intrinsics().distortion;
   const auto used = std::find_if(k.rbegin(), k.rend(), [](double value) { return value != 0; });
   const auto count = static_cast<std::size_t>(k.rend() - used);
-  if (count == 0) return kColmapLenses[kPinhole];
-  return kColmapLenses[count <= 4 ? kOpenCv : kFullOpenCv];
+  if (count == 0) return colmap_lenses()[kPinhole];
+  return colmap_lenses()[count <= 4 ? kOpenCv : kFullOpenCv];
 }
 
 /// In the order of FULL_OPENCV or OPENCV_FISHEYE, which is that of the coefficients.

@@ -129,6 +129,12 @@ void SceneCheck::see(const Eigen::Isometry3d& camera_from_board) {
   distances_m_.push_back(distance_m);
   widths_px_.push_back(focal_px * diagonal_m_ / std::max(distance_m, diagonal_m_ / 2));
   if (is_inside(camera_from_mesh.inverse().translation())) ++inside_;
+  const auto middle = session_.camera.project(camera_from_mesh * box_.center());
+  const Eigen::AlignedBox2d image(
+      Eigen::Vector2d(0, 0),
+      Eigen::Vector2d(session_.camera.width_px() - 1, session_.camera.height_px() - 1));
+  if (!middle || !image.contains(*middle)) ++outside_;
+  reach_m_ = std::max(reach_m_, camera_from_board.inverse().translation().norm());
 }
 
 double SceneCheck::median_width_px() const {
@@ -154,6 +160,16 @@ void SceneCheck::refuse_small_object() const {
         fmt::format("{}, seen from {} over tags {} wide", small, length_text(distance_m),
                     length_text(tag_m)),
         unit_question(distance_m, least_m, most_m, "give board and mesh in metres"));
+  }
+  // The cameras stand round their origin and the object was put far from it.
+  const double away_m = (session_.board_from_object * box_.center()).norm();
+  if (away_m > kReach * (reach_m_ + diagonal_m_)) {
+    throw core::bad_input(
+        session_.folder / "session.json",
+        fmt::format("{}: T_stage_object puts it {} from the origin of the poses, the cameras {}",
+                    small, length_text(away_m), length_text(reach_m_)),
+        unit_question(away_m, 0.01 * reach_m_, reach_m_, "give the place in metres") +
+            " (translation of T_stage_object)");
   }
   throw core::bad_input(
       session_.poses.value_or(session_.folder),
@@ -204,6 +220,12 @@ std::vector<std::string> SceneCheck::doubts() const {
         "{}: the camera stands inside of the object's hull in {} of {} views; is the object where "
         "T_stage_object says, and of that size?",
         name_of(session_.mesh), inside_, views()));
+  }
+  if (2 * outside_ > views()) {
+    doubts.push_back(
+        fmt::format("{}: the middle of the object is outside of the image in {} of {} views; are "
+                    "T_stage_object and the poses right?",
+                    name_of(session_.mesh), outside_, views()));
   }
   const double width_px = median_width_px();
   if (width_px < kDoubtfulPixels) {

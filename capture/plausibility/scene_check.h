@@ -58,6 +58,8 @@ class SceneCheck {
   std::vector<double> widths_px_;            ///< of the object in each view, about
   std::vector<double> distances_m_;          ///< of the camera from the object's middle
   std::size_t inside_ = 0;                   ///< views from inside of the mesh's convex hull
+  std::size_t outside_ = 0;                  ///< views without the object's middle in the image
+  double reach_m_ = 0;                       ///< farthest camera from the origin of the poses
 };
 
 }  // namespace sheen::capture

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace sheen::capture {
 namespace {
@@ -22,6 +23,15 @@ constexpr std::array<EpochUnit, 4> kEpochUnits{{{1e17, "nanoseconds", " and divi
                                                 {1e11, "milliseconds", " and divide by 1000"},
                                                 {kEpoch_s, "seconds", ""}}};
 
+/// A unit that is finer than the second, by how many of it a second holds.
+struct FinerUnit {
+  double per_second;
+  const char* name;
+};
+constexpr std::array<FinerUnit, 3> kFinerUnits{
+    {{1e3, "milliseconds"}, {1e6, "microseconds"}, {1e9, "nanoseconds"}}};
+constexpr double kSameSpan = 0.2;  // poses may begin later and end earlier than the frames
+
 std::string range_text(double first, double last) {
   const bool is_whole = first == std::floor(first) && last == std::floor(last);
   return is_whole ? fmt::format("{:.0f} to {:.0f}", first, last)
@@ -35,6 +45,14 @@ std::string frames_text(const FrameSpan& frames, Stamps stamps) {
   return fmt::format("the frames from {:.6g} to {:.6g} s", frames.first_s, frames.last_s);
 }
 
+std::string ranges_text(const Trajectory& trajectory, const FrameSpan& frames) {
+  const auto& entries = trajectory.entries();
+  const Stamps kind = trajectory.stamps();
+  return fmt::format("its stamps run from {}{}, {}",
+                     range_text(entries.front().stamp, entries.back().stamp),
+                     kind == Stamps::seconds ? " s" : "", frames_text(frames, kind));
+}
+
 }  // namespace
 
 StampFault unmatched_stamps(const Trajectory& trajectory, const FrameSpan& frames) {
@@ -42,9 +60,7 @@ StampFault unmatched_stamps(const Trajectory& trajectory, const FrameSpan& frame
   if (entries.empty()) return {"holds no pose", "write one line for every frame"};
   const double first = entries.front().stamp, last = entries.back().stamp;
   const Stamps kind = trajectory.stamps();
-  const std::string ranges =
-      fmt::format("its stamps run from {}{}, {}", range_text(first, last),
-                  kind == Stamps::seconds ? " s" : "", frames_text(frames, kind));
+  const std::string ranges = ranges_text(trajectory, frames);
   for (const EpochUnit& unit : kEpochUnits) {
     if (first < unit.least) continue;
     return {ranges + fmt::format(": they count {} since 1970", unit.name),
@@ -52,15 +68,10 @@ StampFault unmatched_stamps(const Trajectory& trajectory, const FrameSpan& frame
                         "decimals",
                         unit.divide)};
   }
+  if (auto finer = finer_stamps(trajectory, frames)) return std::move(*finer);
   if (kind == Stamps::indices) {
-    const double seconds = frames.last_s - frames.first_s;
-    const bool are_milliseconds = last > frames.last_index && last <= 1100 * seconds + 1000;
     return {ranges,
-            are_milliseconds
-                ? "whole numbers are frame indices from 0; are they milliseconds? write "
-                  "seconds with decimals"
-                : "whole numbers are frame indices from 0; write seconds with decimals, such "
-                  "as 1.000"};
+            "whole numbers are frame indices from 0; write seconds with decimals, such as 1.000"};
   }
   if (first > frames.last_s || last < frames.first_s) {
     return {ranges, "seconds count from the first frame: shift the stamps"};
@@ -88,6 +99,26 @@ std::optional<StampFault> counting_stamps(const Trajectory& trajectory, const Fr
                                 range_text(entries.front().stamp, entries.back().stamp),
                                 frames_text(frames, Stamps::seconds)),
                     "frame numbers are written without decimals"};
+}
+
+std::optional<StampFault> finer_stamps(const Trajectory& trajectory, const FrameSpan& frames) {
+  const auto& entries = trajectory.entries();
+  const double frames_s = frames.last_s - frames.first_s;
+  if (entries.size() < 3 || !(frames_s > 0)) return std::nullopt;
+  // Indices of frames that are there are indices, whatever their steps.
+  if (trajectory.stamps() == Stamps::indices && entries.back().stamp <= frames.last_index) {
+    return std::nullopt;
+  }
+  const double per_second = (entries.back().stamp - entries.front().stamp) / frames_s;
+  for (const FinerUnit& unit : kFinerUnits) {
+    if (std::abs(per_second / unit.per_second - 1) > kSameSpan) continue;
+    return StampFault{
+        fmt::format("{} ({:.3g} s): they are {}", ranges_text(trajectory, frames), frames_s,
+                    unit.name),
+        fmt::format("divide them by {:.0f} and write seconds with decimals, such as 1.000",
+                    unit.per_second)};
+  }
+  return std::nullopt;
 }
 
 std::optional<StampFault> shifted_stamps(const Trajectory& trajectory, int frames) {

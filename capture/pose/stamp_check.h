@@ -28,6 +28,11 @@ StampFault unmatched_stamps(const Trajectory& trajectory, const FrameSpan& frame
 /// frames take less than half of that. They give few frames a pose.
 std::optional<StampFault> counting_stamps(const Trajectory& trajectory, const FrameSpan& frames);
 
+/// Stamps from the first frame in milliseconds, microseconds or nanoseconds: over all of the
+/// recording they run a thousand times (or more) as far as its frames. Whole ones count as indices
+/// and give wrong frames a pose, a few.
+std::optional<StampFault> finer_stamps(const Trajectory& trajectory, const FrameSpan& frames);
+
 /// Stamps that name the wrong frames although they match: indices that count from 1 for a recording
 /// of as many frames, which count from 0. `frames` is all of the recording.
 std::optional<StampFault> shifted_stamps(const Trajectory& trajectory, int frames);

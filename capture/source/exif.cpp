@@ -7,7 +7,8 @@
 namespace sheen::capture {
 namespace {
 
-constexpr std::uint16_t kWidth = 0x0100, kHeight = 0x0101, kOrientation = 0x0112, kProfile = 0x8773,
+constexpr std::uint16_t kWidth = 0x0100, kHeight = 0x0101, kBits = 0x0102, kColours = 0x0106,
+                        kNumberKind = 0x0153, kOrientation = 0x0112, kProfile = 0x8773,
                         kExif = 0x8769, kInteroperability = 0xA005, kColourSpace = 0xA001,
                         kFocal35mm = 0xA405, kIndex = 0x0001;
 constexpr std::uint16_t kShort = 3;
@@ -51,6 +52,16 @@ class TiffBytes {
     const auto entry = find(directory, tag);
     if (!entry) return std::nullopt;
     return number(*entry + 8, number(*entry + 2, 2) == kShort ? 2 : 4);
+  }
+
+  /// The first of a list of small numbers, which lies elsewhere where it has more than two.
+  [[nodiscard]] std::optional<std::uint32_t> first_of(std::size_t directory,
+                                                      std::uint16_t tag) const {
+    const auto entry = find(directory, tag);
+    if (!entry || number(*entry + 2, 2) != kShort) return std::nullopt;
+    if (number(*entry + 4, 4).value_or(0) <= 2) return number(*entry + 8, 2);
+    const auto place = number(*entry + 8, 4);
+    return place ? number(*place, 2) : std::nullopt;
   }
 
   [[nodiscard]] std::size_t first_directory() const { return number(4, 4).value_or(0); }
@@ -104,6 +115,35 @@ std::optional<ImageSize> tiff_size(std::span<const std::uint8_t> tiff) {
   constexpr std::uint32_t most = 1U << 30U;
   return ImageSize{static_cast<int>(std::min(most, *width)),
                    static_cast<int>(std::min(most, *height))};
+}
+
+std::string tiff_colour_fault(std::span<const std::uint8_t> tiff) {
+  const TiffBytes bytes(tiff);
+  if (!bytes.is_tiff()) return {};
+  const std::size_t first = bytes.first_directory();
+  // TIFF 6.0, PhotometricInterpretation, and DNG's two.
+  switch (bytes.first_of(first, kColours).value_or(2)) {
+    case 5:
+      return "has CMYK colours, as for print";
+    case 8:
+    case 9:
+    case 10:
+      return "has Lab colours";
+    case 32803:
+    case 34892:
+      return "holds a camera's raw data";
+    case 32844:
+    case 32845:
+      return "has logarithmic colours (LogLuv)";
+    default:
+      break;
+  }
+  constexpr std::uint32_t is_float = 3, most_bits = 16;
+  if (bytes.first_of(first, kNumberKind) == is_float) return "has colours in floating point";
+  if (bytes.first_of(first, kBits).value_or(8) > most_bits) {
+    return "has more than 16 bits a channel";
+  }
+  return {};
 }
 
 std::span<const std::uint8_t> tiff_profile(std::span<const std::uint8_t> tiff) {

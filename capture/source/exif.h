@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 
 namespace sheen::capture {
 
@@ -23,6 +24,10 @@ ExifFacts read_exif(std::span<const std::uint8_t> tiff);
 /// Stored pixels of the first picture of a TIFF file, each side cut off at 2^30; nothing where it
 /// does not say.
 std::optional<ImageSize> tiff_size(std::span<const std::uint8_t> tiff);
+
+/// Why the colours of the first picture of a TIFF file are not read ("has CMYK colours, as for
+/// print"); empty for grey, palettes, RGB and YCbCr in whole numbers of at most 16 bits.
+std::string tiff_colour_fault(std::span<const std::uint8_t> tiff);
 
 /// Bytes of the ICC profile of a TIFF file; empty where there is none.
 std::span<const std::uint8_t> tiff_profile(std::span<const std::uint8_t> tiff);

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <string_view>
 
@@ -78,6 +79,10 @@ ImageKind kind_of(Bytes bytes) {
     if (starts_with(bytes, "crx ", 8)) return ImageKind::raw;
     return ImageKind::unknown;
   }
+  if (starts_with(bytes, std::string_view("II+\0", 4)) ||
+      starts_with(bytes, std::string_view("MM\0+", 4))) {
+    return ImageKind::big_tiff;
+  }
   const bool is_tiff = starts_with(bytes, std::string_view("II*\0", 4)) ||
                        starts_with(bytes, std::string_view("MM\0*", 4));
   if (is_tiff && starts_with(bytes, "CR", 8)) return ImageKind::raw;
@@ -133,8 +138,37 @@ std::vector<std::uint8_t> inflated_profile(Bytes chunk) {
   return profile;
 }
 
+/// Primaries, transfer, matrix, range of cICP, by the numbers of H.273; empty for sRGB.
+std::string coding_doubt(Bytes chunk) {
+  std::string doubt;
+  const auto add = [&doubt](const std::string& part) {
+    doubt += (doubt.empty() ? "" : ", ") + part;
+  };
+  const int primaries = chunk[0], transfer = chunk[1];
+  constexpr int bt709 = 1, bt2020 = 9, dci_p3 = 11, display_p3 = 12, pq = 16, hlg = 18;
+  if (primaries == bt2020) add("primaries BT.2020");
+  if (primaries == dci_p3 || primaries == display_p3) add("primaries P3");
+  if (primaries != bt709 && doubt.empty()) add("primaries " + std::to_string(primaries));
+  if (transfer == pq) add("transfer PQ");
+  if (transfer == hlg) add("transfer HLG");
+  if (chunk[3] == 0) add("limited range");
+  return doubt.empty() ? doubt : doubt + " (cICP)";
+}
+
+/// White, red, green, blue of cHRM: x and y of each in steps of 1e-5; empty for those of sRGB.
+std::string primaries_doubt(Bytes chunk) {
+  constexpr std::array<double, 8> srgb{0.3127, 0.3290, 0.64, 0.33, 0.30, 0.60, 0.15, 0.06};
+  constexpr double same = 0.01;
+  for (std::size_t i = 0; i < srgb.size(); ++i) {
+    if (std::abs(big_endian(chunk, 4 * i, 4) / 1e5 - srgb[i]) > same) {
+      return "other primaries than sRGB's (cHRM)";
+    }
+  }
+  return {};
+}
+
 void read_png(Bytes bytes, ImageFacts& facts) {
-  bool says_srgb = false;
+  bool says_srgb = false, says_coding = false;
   std::size_t at = 8;
   while (at + 12 <= bytes.size()) {
     const std::size_t length = big_endian(bytes, at, 4);
@@ -150,9 +184,18 @@ void read_png(Bytes bytes, ImageFacts& facts) {
     if (starts_with(bytes, "gAMA", at + 4) && length == 4) {
       facts.gamma = big_endian(chunk, 0, 4) / 100000.0;
     }
+    if (starts_with(bytes, "cICP", at + 4) && length == 4) {
+      facts.colour_doubt = coding_doubt(chunk);
+      says_coding = true;
+    }
+    if (starts_with(bytes, "cHRM", at + 4) && length == 32 && !says_coding) {
+      facts.colour_doubt = primaries_doubt(chunk);
+    }
     at += 12 + length;
   }
-  if (says_srgb || !facts.profile.empty()) facts.gamma.reset();
+  // cICP comes before sRGB, and that before cHRM and gAMA.
+  if (says_srgb && !says_coding) facts.colour_doubt.clear();
+  if (says_srgb || says_coding || !facts.profile.empty()) facts.gamma.reset();
 }
 
 /// Two numbers behind the length of the header; of the newer one the height is negative where the
@@ -212,6 +255,7 @@ ImageFacts read_image_facts(Bytes bytes) {
     case ImageKind::tiff: {
       take_exif(bytes, facts);
       facts.size = tiff_size(bytes);
+      facts.colour_fault = tiff_colour_fault(bytes);
       const auto profile = tiff_profile(bytes);
       facts.profile.assign(profile.begin(), profile.end());
       break;
@@ -235,6 +279,8 @@ std::optional<UnreadableKind> unreadable_kind(ImageKind kind) {
       return UnreadableKind{"JPEG XL", "convert it to JPEG or PNG"};
     case ImageKind::gif:
       return UnreadableKind{"GIF", "convert it to PNG"};
+    case ImageKind::big_tiff:
+      return UnreadableKind{"BigTIFF", "write it as an ordinary TIFF or PNG"};
     case ImageKind::raw:
       return UnreadableKind{"a camera's raw format",
                             "develop it to JPEG or PNG, without lens correction"};

@@ -14,7 +14,20 @@
 namespace sheen::capture {
 
 /// What the bytes of a picture say about it, whatever its name.
-enum class ImageKind { jpeg, png, tiff, bmp, webp, heif, avif, jpeg_xl, gif, raw, unknown };
+enum class ImageKind {
+  jpeg,
+  png,
+  tiff,
+  bmp,
+  webp,
+  heif,
+  avif,
+  jpeg_xl,
+  gif,
+  big_tiff,
+  raw,
+  unknown
+};
 
 struct ImageFacts {
   ImageKind kind = ImageKind::unknown;
@@ -25,6 +38,8 @@ struct ImageFacts {
   bool is_adobe_rgb = false;          ///< EXIF says so, as cameras do without a profile
   std::optional<int> focal_35mm;      ///< EXIF: mm, on 35 mm film with the same diagonal
   std::optional<double> gamma;        ///< of PNG, where nothing else says what its colours are
+  std::string colour_fault;  ///< of TIFF: why its colours are not read; empty where they are
+  std::string colour_doubt;  ///< of PNG: other colours than sRGB that it states, without a profile
 };
 
 /// Reads headers only, and believes no length beyond the bytes.

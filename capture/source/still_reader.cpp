@@ -49,6 +49,9 @@ void check_headers(const std::filesystem::path& path, const ImageFacts& facts,
   if (facts.kind == ImageKind::jpeg && facts.channels == 4) {
     throw core::bad_input(path, "has CMYK colours, as for print", "convert it to RGB");
   }
+  if (!facts.colour_fault.empty()) {
+    throw core::bad_input(path, facts.colour_fault, "convert it to RGB of 8 or 16 bits");
+  }
   if (!facts.size) return;
   const auto [width_px, height_px] = *facts.size;
   if (width_px < 1 || height_px < 1 || width_px > kMostSide_px || height_px > kMostSide_px) {
@@ -123,6 +126,9 @@ void StillReader::convert_colours(const std::filesystem::path& path, const Image
       static_cast<void>(adobe_rgb_->take_adobe_rgb());
     }
     profile = &*adobe_rgb_;
+  } else if (!facts.colour_doubt.empty()) {
+    return note(
+        path, "states " + facts.colour_doubt + ", which is passed over; its colours count as sRGB");
   } else if (facts.gamma && std::abs(*facts.gamma - 1 / 2.2) > 0.02) {
     return note(path, fmt::format("states a gamma of {:.2f}, which is passed over; its colours "
                                   "count as sRGB",

@@ -34,13 +34,13 @@ class ObjReader {
   MeshFile read() {
     std::string text = read_file(path_);
     normalise_text(text, path_);
-    join_continued_lines(text);
-    std::string_view rest = text;
-    while (!rest.empty()) {
-      const std::size_t end = std::min(rest.find('\n'), rest.size());
+    for (std::size_t begin = 0; begin < text.size();) {
       ++line_;
-      take(rest.substr(0, end));
-      rest.remove_prefix(std::min(end + 1, rest.size()));
+      std::size_t end = line_end(text, begin);
+      const std::size_t joined = join_continued_lines(text, begin, end);
+      take(std::string_view(text).substr(begin, end - begin));
+      line_ += joined;
+      begin = end + 1;
     }
     if (!has_normals_) mesh_.normals.clear();
     add_colours();
@@ -56,12 +56,23 @@ class ObjReader {
     throw bad_input(path_, "line " + std::to_string(line_) + " " + fault, "write it again");
   }
 
-  /// A backslash at the end of a line joins the next one to it. Line numbers stay.
-  static void join_continued_lines(std::string& text) {
-    for (std::size_t i = text.find("\\\n"); i != std::string::npos; i = text.find("\\\n", i)) {
-      text[i] = ' ';
-      text[i + 1] = ' ';
+  static std::size_t line_end(const std::string& text, std::size_t begin) {
+    return std::min(text.find('\n', begin), text.size());
+  }
+
+  /// A backslash at the end of a line of numbers joins the next one to it; comments and names of
+  /// groups may end with one, as folders do. Moves `end` and returns the lines joined.
+  static std::size_t join_continued_lines(std::string& text, std::size_t begin, std::size_t& end) {
+    std::string_view line = std::string_view(text).substr(begin, end - begin);
+    if (!line.ends_with('\\')) return 0;
+    const std::string_view keyword = next_word(line);
+    if (keyword != "v" && keyword != "vn" && keyword != "f" && keyword != "fo") return 0;
+    std::size_t joined = 0;
+    for (; end < text.size() && text[end - 1] == '\\'; ++joined) {
+      text[end - 1] = text[end] = ' ';
+      end = line_end(text, end);
     }
+    return joined;
   }
 
   void take(std::string_view line) {

@@ -191,6 +191,15 @@ class FaceReader {
   std::vector<std::uint32_t> corners_;
 };
 
+bool is_surface(const PlyElement& element) {
+  return element.name == "face" || element.name == "tristrips";
+}
+
+void skip_rows(PlyBody& body, const PlyElement& element) {
+  if (element.properties.empty()) return;
+  for (std::size_t row = 0; row < element.rows; ++row) body.skip_row(element);
+}
+
 template <typename T>
 void append_bytes(std::string& bytes, const T& value) {
   const auto raw = std::bit_cast<std::array<char, sizeof(T)>>(value);
@@ -248,25 +257,37 @@ std::string ply_bytes(const Mesh& mesh, std::span<const float> confidence,
 MeshFile read_ply(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
   const PlyHeader header = parse_ply_header(bytes, path);
-  PlyBody body(std::string_view(bytes).substr(header.size_bytes), header.format, path);
+  const std::string_view rows = std::string_view(bytes).substr(header.size_bytes);
+  const auto vertex = std::find_if(header.elements.begin(), header.elements.end(),
+                                   [](const PlyElement& e) { return e.name == "vertex"; });
+  if (vertex == header.elements.end()) {
+    throw bad_input(path, "has no element vertex", "write it again");
+  }
+  check_coordinates(*vertex, path);
   MeshFile mesh;
-  FaceReader faces(body, mesh, path);
-  bool is_splats = false;
-  for (const PlyElement& element : header.elements) {
-    if (element.properties.empty()) continue;
-    if (element.name == "vertex" && mesh.positions.empty()) {
-      check_coordinates(element, path);
-      is_splats = has_property(element, "f_dc_0");
-      read_vertices(body, element, mesh);
-    } else if (element.name == "face") {
-      faces.read_faces(element);
-    } else if (element.name == "tristrips") {
-      faces.read_strips(element);
+  PlyBody body(rows, header.format, path);
+  for (auto element = header.elements.begin(); element != vertex; ++element) {
+    skip_rows(body, *element);
+  }
+  read_vertices(body, *vertex, mesh);
+
+  // Faces, which may come before the vertices that they name: then from the beginning.
+  const bool begins_anew = std::any_of(header.elements.begin(), vertex, is_surface);
+  PlyBody again(rows, header.format, path);
+  FaceReader faces(begins_anew ? again : body, mesh, path);
+  for (auto element = begins_anew ? header.elements.begin() : vertex + 1;
+       element != header.elements.end(); ++element) {
+    if (element->properties.empty()) continue;
+    if (element->name == "face") {
+      faces.read_faces(*element);
+    } else if (element->name == "tristrips") {
+      faces.read_strips(*element);
     } else {
-      for (std::size_t row = 0; row < element.rows; ++row) body.skip_row(element);
+      skip_rows(begins_anew ? again : body, *element);
     }
   }
   faces.add_notes();
+  const bool is_splats = has_property(*vertex, "f_dc_0");
   if (is_splats && mesh.triangles.empty()) {
     throw bad_input(path, "is a cloud of Gaussian splats", "give a surface of triangles");
   }

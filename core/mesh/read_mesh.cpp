@@ -136,7 +136,33 @@ void judge_grid(const MeshFile& file, const Eigen::AlignedBox3d& box, const fs::
   notes.push_back(std::string(fault) + "; " + remedy);
 }
 
+/// Vertices that no triangle uses, as cleaned scans leave them, are no part of the surface: they
+/// move to one that is, so that none of them counts for its size or place. They keep their numbers.
+void place_unused(MeshFile& file, std::vector<std::string>& notes) {
+  if (file.triangles.empty()) return;
+  std::vector<std::uint8_t> is_used(file.positions.size(), 0);
+  for (const auto& triangle : file.triangles) {
+    for (const std::uint32_t corner : triangle) is_used[corner] = 1;
+  }
+  Eigen::AlignedBox3d box;
+  for (std::size_t i = 0; i < is_used.size(); ++i) {
+    if (is_used[i] != 0) box.extend(file.positions[i]);
+  }
+  const Eigen::Vector3d place = file.positions[file.triangles.front()[0]];
+  std::size_t outside = 0;
+  for (std::size_t i = 0; i < is_used.size(); ++i) {
+    if (is_used[i] != 0) continue;
+    outside += box.contains(file.positions[i]) ? 0 : 1;
+    file.positions[i] = place;
+  }
+  if (outside == 0) return;
+  notes.push_back(std::to_string(outside) +
+                  " of its vertices belong to no triangle and lie off the surface; they are passed "
+                  "over");
+}
+
 Mesh rounded(MeshFile&& file, const fs::path& path, std::vector<std::string>& notes) {
+  place_unused(file, notes);
   for (std::size_t i = 0; i < file.positions.size(); ++i) {
     if (!file.positions[i].allFinite()) refuse_position(i, path);
   }

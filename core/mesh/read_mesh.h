@@ -12,11 +12,11 @@ namespace sheen::core {
 
 /// Reads PLY, OBJ or GLB; transforms of nodes are applied, several meshes become one.
 /// Polygons are cut into triangles, degenerate triangles are dropped. PLY and glTF: vertices keep
-/// number and order of the file, also those that no triangle uses and those that share a position
-/// (hard edges), so that patch indices mean vertex indices. OBJ: corners that share a position and
-/// a normal become one vertex, in order of first use; texture coordinates, groups and materials do
-/// not split vertices. Missing, zero or unusable normals are computed, weighted by angle; vertices
-/// that no triangle uses get (0, 0, 1) then.
+/// number and order of the file, also those that no triangle uses (which move to one that is used)
+/// and those that share a position (hard edges), so that patch indices mean vertex indices. OBJ:
+/// corners that share a position and a normal become one vertex, in order of first use; texture
+/// coordinates, groups and materials do not split vertices. Missing, zero or unusable normals are
+/// computed, weighted by angle; vertices that no triangle uses get (0, 0, 1) then.
 ///
 /// Coordinates are read in double precision. A mesh that lies so far from its origin that single
 /// precision would move its vertices gets an offset (Mesh::offset, whole metres); any other keeps

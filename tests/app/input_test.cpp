@@ -4,8 +4,11 @@
 #include "core/mesh/read_mesh.h"
 #include "tests/app/copied_session.h"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <iomanip>
 #include <regex>
 #include <sstream>
@@ -31,28 +34,45 @@ class Input : public CopiedSession {
     write_file(session_ / "board.yaml", scaled.str() + std::string(rest, text.cend()));
   }
 
-  /// The true poses in place of the tags, their positions in another unit.
-  void use_poses(double factor) const {
+  using Pose = std::array<double, 7>;  ///< tx ty tz qx qy qz qw
+
+  /// The true poses in place of the tags, each as `change` gives it, and its stamp.
+  template <typename Change, typename Stamp>
+  void use_poses(const Change& change, const Stamp& stamp) const {
     std::istringstream in(read_file(sample_session() / "truth_poses.txt"));
     std::ostringstream out;
     out << std::setprecision(12);
     for (std::string line; std::getline(in, line);) {
       std::istringstream words(line);
-      int stamp = 0;
-      double t[3], q[4];
-      if (!(words >> stamp >> t[0] >> t[1] >> t[2] >> q[0] >> q[1] >> q[2] >> q[3])) continue;
-      out << stamp;
-      for (const double value : t) out << ' ' << factor * value;
-      for (const double value : q) out << ' ' << value;
+      int frame = 0;
+      Pose pose{};
+      if (!(words >> frame)) continue;
+      for (double& value : pose) words >> value;
+      out << stamp(frame);
+      for (const double value : change(pose)) out << ' ' << value;
       out << '\n';
     }
     write_file(session_ / "poses.txt", out.str());
     replace("session.json", "\"board\": *\"board.yaml\"", "\"poses\": \"poses.txt\"");
   }
 
+  /// Their positions in another unit.
+  void use_poses(double factor) const {
+    use_poses(
+        [factor](Pose pose) {
+          for (std::size_t i = 0; i < 3; ++i) pose[i] *= factor;
+          return pose;
+        },
+        [](int frame) { return frame; });
+  }
+
   [[nodiscard]] ProgramRun replay() const {
     return run_sheen(
         {"replay", session_, "-o", model_, "--quiet", "--representation", "mean", "--end", "40"});
+  }
+
+  [[nodiscard]] ProgramRun replay_all() const {
+    return run_sheen({"replay", session_, "-o", model_, "--quiet", "--representation", "mean"});
   }
 
   [[nodiscard]] double psnr() const {
@@ -95,6 +115,34 @@ TEST_F(Input, PosesInAnotherUnitAreRefusedByReplayAndEvaluate) {
                 .exit_code,
             0);
   expect_refused(run_sheen({"evaluate", good, session_, "--quiet"}), "poses.txt", "centimetres");
+}
+
+// The object's middle stays in a tenth of the images then, in one of seventeen where the poses are
+// inverted: enough to fit something.
+TEST_F(Input, QuaternionsThatBeginWithWAreRefusedThoughSomeImagesShowTheObject) {
+  use_poses([](const Pose& p) { return Pose{p[0], p[1], p[2], p[6], p[3], p[4], p[5]}; },
+            [](int frame) { return frame; });
+  expect_refused(replay_all(), "poses.txt", "quaternions begin with w");
+  EXPECT_FALSE(fs::exists(model_));
+}
+
+TEST_F(Input, InvertedPosesAreRefusedThoughSomeImagesShowTheObject) {
+  use_poses(
+      [](const Pose& p) {
+        const Eigen::Quaterniond q = Eigen::Quaterniond(p[6], p[3], p[4], p[5]).conjugate();
+        const Eigen::Vector3d t = -(q * Eigen::Vector3d(p[0], p[1], p[2]));
+        return Pose{t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()};
+      },
+      [](int frame) { return frame; });
+  expect_refused(replay_all(), "poses.txt", "invert them");
+}
+
+TEST_F(Input, StampsInMillisecondsAreRefusedAndNoFramesOfOtherPosesFitted) {
+  // Whole numbers: 0, 33, 67 and 100 are frames of the 120 as well.
+  use_poses([](const Pose& p) { return p; },
+            [](int index) { return std::lround(index * 1000 / 30.0); });
+  expect_refused(replay_all(), "poses.txt", "milliseconds");
+  EXPECT_FALSE(fs::exists(model_));
 }
 
 TEST_F(Input, AMeshInSurveyCoordinatesGivesTheSameModelAtItsOwnPlace) {

@@ -201,6 +201,24 @@ TEST_F(CameraForms, ColmapAndNerfstudioCountFromTheCorner) {
   refuse("cameras.txt", "1 THIN_PRISM_FISHEYE 1280 720 1 1 1 1 1 1 1 1 1 1 1 1\n", "THIN_PRISM");
 }
 
+TEST_F(CameraForms, ColmapsSmallerModelsAreTheLargerOnesWithoutTerms) {
+  const auto same = [this](const std::string& smaller, const std::string& larger) {
+    SCOPED_TRACE(smaller);
+    expect_same(read("smaller.txt", "1 " + smaller + "\n"),
+                read("larger.txt", "1 " + larger + "\n"));
+  };
+  same("SIMPLE_PINHOLE 640 480 500 320 240", "OPENCV 640 480 500 500 320 240 0 0 0 0");
+  same("SIMPLE_RADIAL 640 480 500 320 240 0.1", "OPENCV 640 480 500 500 320 240 0.1 0 0 0");
+  same("RADIAL 640 480 500 320 240 0.1 0.02",
+       "FULL_OPENCV 640 480 500 500 320 240 0.1 0.02 0 0 0 0 0 0");
+  same("SIMPLE_RADIAL_FISHEYE 640 480 300 320 240 0.1",
+       "OPENCV_FISHEYE 640 480 300 300 320 240 0.1 0 0 0");
+  same("RADIAL_FISHEYE 640 480 300 320 240 0.1 0.02",
+       "OPENCV_FISHEYE 640 480 300 300 320 240 0.1 0.02 0 0");
+  refuse("cameras.txt", "1 OPENCV 640 480 500 500 320\n", "3 parameters", "has 8");
+  refuse("cameras.txt", "1 PINHOLE 640 480 500 500 320,5 240\n", "decimal comma");
+}
+
 TEST_F(CameraForms, FisheyesAreWrittenAndReadBack) {
   const auto path = folder_ / "fisheye.yaml";
   write_camera(path, kFisheye);

@@ -283,17 +283,88 @@ TEST(StillReader, NamesKindsThatAreNotReadByTheirBytes) {
   refuse("GIF89a", "GIF");
 }
 
+TEST(StillReader, SaysWhichColoursOfAPngItPassesOver) {
+  const TemporaryFolder folder;
+  const std::string png = encoded(corner_image(), ".png");
+  const auto notes = [&](const std::string& type, const std::string& data) {
+    StillReader reader;
+    static_cast<void>(
+        reader.read(folder.write("stated.png", with_chunk(png, type, data)), kStillSize));
+    return reader.notes().empty() ? std::string() : reader.notes().front();
+  };
+  // H.273: BT.2020 is 9, PQ 16, Display P3 12, BT.709 1, sRGB's curve 13; full range 1.
+  EXPECT_NE(notes("cICP", std::string("\x09\x10\0\x01", 4)).find("BT.2020, transfer PQ"),
+            std::string::npos);
+  EXPECT_NE(notes("cICP", std::string("\x0c\x0d\0\x01", 4)).find("P3"), std::string::npos);
+  EXPECT_NE(notes("cICP", std::string("\x01\x0d\0\0", 4)).find("limited range"), std::string::npos);
+  EXPECT_EQ(notes("cICP", std::string("\x01\x0d\0\x01", 4)), "");
+  const auto chromaticities = [](const std::vector<int>& steps) {
+    std::string bytes;
+    for (const int step : steps) {
+      for (const unsigned shift : {24U, 16U, 8U, 0U}) bytes += static_cast<char>(step >> shift);
+    }
+    return bytes;
+  };
+  const std::string wide = chromaticities({31270, 32900, 68000, 32000, 26500, 69000, 15000, 6000});
+  EXPECT_NE(notes("cHRM", wide).find("other primaries"), std::string::npos);
+  EXPECT_EQ(notes("cHRM", chromaticities({31270, 32900, 64000, 33000, 30000, 60000, 15000, 6000})),
+            "");
+}
+
+TEST(StillReader, RefusesTiffOfColoursThatAreNotRgb) {
+  const TemporaryFolder folder;
+  // One directory of three entries: bits a channel, colours, kind of the numbers; a list of three
+  // numbers lies behind it.
+  const auto tiff = [](int bits, int colours, int number_kind) {
+    std::string bytes("II*\0\x08\0\0\0\x03\0", 10);
+    const auto put = [&bytes](std::uint32_t value, int size) {
+      for (int i = 0; i < size; ++i) bytes += static_cast<char>(value >> (8 * i) & 0xffU);
+    };
+    const auto entry = [&put](std::uint32_t tag, std::uint32_t count, std::uint32_t value) {
+      put(tag, 2), put(3, 2), put(count, 4), put(value, 4);
+    };
+    constexpr std::uint32_t behind = 8 + 2 + 3 * 12 + 4;
+    entry(0x0102, 3, behind);
+    entry(0x0106, 1, static_cast<std::uint32_t>(colours));
+    entry(0x0153, 3, behind + 6);
+    put(0, 4);
+    for (int i = 0; i < 3; ++i) put(static_cast<std::uint32_t>(bits), 2);
+    for (int i = 0; i < 3; ++i) put(static_cast<std::uint32_t>(number_kind), 2);
+    return bytes;
+  };
+  const auto refuse = [&](const std::string& bytes, const char* word) {
+    const auto path = folder.write("print.tif", bytes);
+    expect_bad_input([&] { static_cast<void>(StillReader().read(path, kStillSize)); }, "print.tif",
+                     word, "convert it");
+  };
+  refuse(tiff(8, 5, 1), "CMYK");
+  refuse(tiff(8, 8, 1), "Lab");
+  refuse(tiff(16, 32803, 1), "raw");
+  refuse(tiff(32, 2, 3), "floating point");
+  refuse(tiff(32, 2, 1), "16 bits");
+  const auto big = folder.write("big.tif", std::string("II+\0\x08\0\0\0", 8));
+  expect_bad_input([&] { static_cast<void>(StillReader().read(big, kStillSize)); }, "BigTIFF");
+  // What OpenCV writes is read: 16 bits a channel, grey.
+  StillReader reader;
+  for (const int type : {CV_16UC3, CV_8UC1, CV_16UC1}) {
+    const cv::Mat image(kStillSize.height_px, kStillSize.width_px, type, cv::Scalar::all(100));
+    EXPECT_FALSE(
+        reader.read(folder.write("usual.tif", encoded(image, ".tif")), kStillSize).empty());
+  }
+}
+
 TEST(CalibrationImages, PassOverWhatOthersLeaveInFolders) {
   const TemporaryFolder folder;
   const std::string jpeg = encoded(corner_image(), ".jpg");
   folder.write("IMG_1.JPG", jpeg);
   folder.write("IMG_2.jpeg", jpeg);
+  folder.write("IMG_3.webp", "x");
   folder.write("._IMG_1.JPG", std::string("\0\x05\x16\x07", 4));
   folder.write(".hidden.png", "x");
   folder.write("Thumbs.db", "x");
   std::filesystem::create_directories(folder / "more.jpg");
   const auto images = open_calibration_images(folder.path());
-  EXPECT_EQ(images->frame_count(), 2);
+  EXPECT_EQ(images->frame_count(), 3);
 }
 
 TEST(CalibrationImages, NameTheKindThatFillsAFolder) {

@@ -90,6 +90,31 @@ TEST(SceneCheck, PosesInOtherUnitsShowAnObjectOfNoPixels) {
   expect_bad_input([&] { check.check_views(); }, "poses.txt", "millimetres", "pixels");
 }
 
+TEST(SceneCheck, APlaceFarFromTheCamerasNamesTheTransform) {
+  // Poses and mesh in metres, the place in millimetres: 200 m away, and the cameras round the
+  // origin of their poses.
+  Scene scene;
+  const auto there = scene.view_from(0.5);
+  scene.session.board.reset();
+  scene.session.poses = "session/poses.txt";
+  scene.session.board_from_object.translation() *= 1000;
+  SceneCheck check(scene.session, scene.mesh, nullptr);
+  for (int i = 0; i < 10; ++i) check.see(there);
+  expect_bad_input([&] { check.check_views(); }, "session.json", "T_stage_object", "millimetres");
+}
+
+TEST(SceneCheck, AnObjectOutsideOfMostImagesIsADoubt) {
+  const Scene scene;
+  SceneCheck check(scene.session, scene.mesh, &scene.board);
+  look(check, scene, 0.5);
+  EXPECT_TRUE(check.doubts().empty());
+  // From the same places, looking away.
+  const Eigen::Isometry3d away(Eigen::AngleAxisd(1.5, Eigen::Vector3d::UnitX()));
+  for (int i = 0; i < 11; ++i) check.see(away * scene.view_from(0.5));
+  ASSERT_EQ(check.doubts().size(), 1u);
+  EXPECT_NE(check.doubts()[0].find("outside of the image in 11 of 21 views"), std::string::npos);
+}
+
 TEST(SceneCheck, CamerasInsideOfTheObjectAreRefused) {
   // A mesh in decimetres round the cameras.
   Scene scene(10);

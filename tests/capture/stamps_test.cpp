@@ -117,6 +117,33 @@ TEST(Stamps, SecondsThatCountFramesAreTold) {
   EXPECT_FALSE(counting_stamps(Trajectory(entries, Stamps::seconds), frames));
 }
 
+TEST(Stamps, FinerUnitsAreToldWhereAFewFramesMatch) {
+  // Four seconds of 30 images; as milliseconds 0, 33, 67 and 100 are frames, too.
+  const FrameSpan frames{
+      .count = 120, .first_index = 0, .last_index = 119, .first_s = 0, .last_s = 119 / 30.0};
+  const auto told = [&frames](double per_second, Stamps kind, int every = 1) {
+    std::vector<Trajectory::Entry> entries;
+    for (int i = 0; i < 120; i += every) {
+      const double stamp = i * per_second / 30;
+      entries.push_back({kind == Stamps::indices ? std::round(stamp) : stamp});
+    }
+    const auto fault = finer_stamps(Trajectory(entries, kind), frames);
+    return fault ? fault->fault : std::string();
+  };
+  for (const Stamps kind : {Stamps::indices, Stamps::seconds}) {
+    EXPECT_NE(told(1e3, kind).find("milliseconds"), std::string::npos);
+    EXPECT_NE(told(1e3, kind, 5).find("milliseconds"), std::string::npos);
+    EXPECT_NE(told(1e6, kind).find("microseconds"), std::string::npos);
+    EXPECT_NE(told(1e9, kind).find("nanoseconds"), std::string::npos);
+  }
+  // Seconds, indices of all frames and of every 33rd, whose steps are those of milliseconds, and
+  // the indices of a longer recording that this one was cut from.
+  EXPECT_EQ(told(1, Stamps::seconds), "");
+  EXPECT_EQ(told(30, Stamps::indices), "");
+  EXPECT_EQ(told(30, Stamps::indices, 33), "");
+  EXPECT_EQ(told(30 * 10, Stamps::indices), "");
+}
+
 TEST(PoseConvention, NamesWhatWasDoneToThePoses) {
   core::CameraModel::Intrinsics lens;
   lens.width_px = 640;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "core/diagnostics/error.h"
 #include "core/files/read_file.h"
+#include "core/mesh/bounds.h"
 #include "core/mesh/neighbours.h"
 #include "core/mesh/read_mesh.h"
 #include "tests/core/shapes.h"
@@ -260,6 +261,40 @@ TEST(ReadMesh, RepairsNormalsAndKeepsUnusedVertices) {
   EXPECT_EQ(mesh.normals[4], Eigen::Vector3f(0, 0, 1));
 }
 
+TEST(ReadMesh, VerticesWithoutTrianglesCountForNothing) {
+  const TemporaryFolder folder;
+  // Cleaned scans leave them: one far off, one that is no number, one on the surface.
+  const auto path = write_file(
+      folder / "stray.ply",
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "9000 0 0\n0 0 0\n1 0 0\n0 1 0\nnan nan nan\n0.2 0.2 0\n3 1 2 3\n");
+  std::vector<std::string> notes;
+  const Mesh mesh = read_mesh(path, &notes);
+  ASSERT_EQ(mesh.positions.size(), 6u);
+  EXPECT_EQ(bounds_of(mesh).sizes(), Eigen::Vector3f(1, 1, 0));
+  EXPECT_TRUE(mesh.offset.isZero(0));
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_TRUE(notes[0].starts_with("2 of its vertices")) << notes[0];
+}
+
+TEST(ReadMesh, PlyFacesMayComeBeforeTheirVertices) {
+  const TemporaryFolder folder;
+  const std::string vertex =
+      "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string face = "element face 1\nproperty list uchar int vertex_indices\n";
+  const std::string begin = "ply\nformat ascii 1.0\n", positions = "0 0 0\n1 0 0\n0 1 0\n";
+  const Mesh usual = read_mesh(write_file(
+      folder / "usual.ply", begin + vertex + face + "end_header\n" + positions + "3 0 1 2\n"));
+  const Mesh turned = read_mesh(write_file(
+      folder / "first.ply", begin + face + vertex + "end_header\n3 0 1 2\n" + positions));
+  EXPECT_EQ(turned.positions, usual.positions);
+  EXPECT_EQ(turned.triangles, usual.triangles);
+  EXPECT_NE(refusal(write_file(folder / "none.ply", begin + face + "end_header\n3 0 1 2\n"))
+                .find("no element vertex"),
+            std::string::npos);
+}
+
 TEST(ReadMesh, GlbKeepsVerticesAndAppliesTransforms) {
   const TemporaryFolder folder;
   // Vertex 1 is used by nothing, vertices 0 and 4 share a position.
@@ -308,6 +343,19 @@ TEST(ReadMesh, ObjNormalsMakeHardEdges) {
                                "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 1\nvn 0 0 -1\nvn -1 0 0\n"
                                "f 1//1 2//1 3//1\nf 1//2 4//2 2//2\n");
   EXPECT_EQ(read_mesh(path).positions.size(), 6u);
+}
+
+TEST(ReadMesh, ObjBackslashesJoinLinesOfNumbersOnly) {
+  const TemporaryFolder folder;
+  // Folders of Windows end comments and names with one; the vertex after them is the first all the
+  // same. Lines keep their numbers: corner 9 stands in line 8, behind two that are one.
+  const std::string text =
+      "# from C:\\scans\\\nv 0 0 0\nv 1 \\\n0 0\nv 0 1 0\ng D:\\parts\\\nf 1 2 3\n";
+  const Mesh mesh = read_mesh(write_file(folder / "joined.obj", text));
+  ASSERT_EQ(mesh.triangles.size(), 1u);
+  EXPECT_EQ(mesh.positions[mesh.triangles[0][1]], Eigen::Vector3f(1, 0, 0));
+  EXPECT_NE(refusal(write_file(folder / "line.obj", text + "f 1 2 9\n")).find("line 8 "),
+            std::string::npos);
 }
 
 TEST(ReadMesh, SaysWhatIsWrong) {
