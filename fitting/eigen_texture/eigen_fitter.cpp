@@ -21,7 +21,7 @@ namespace {
 
 /// Of every texel the incremental fit keeps so many observations: 8 bytes each.
 constexpr std::size_t kMostPerTexel = 64;
-/// While views arrive bases are found anew with so many more views, at least, or a quarter more.
+/// While views arrive bases are found anew with so many more views, at least, or a third more.
 constexpr std::size_t kViewsAtOnce = 8;
 /// Sweeps of expectation maximisation for what is only looked at.
 constexpr int kLiveSweeps = 2;
@@ -73,7 +73,7 @@ class EigenFitter final : public Fitter {
     history_.add(std::move(seen));
     if (options_.solve == Solve::incremental && directions_.size() == next_solve_) {
       solve(kLiveSweeps);
-      next_solve_ += std::max(kViewsAtOnce, directions_.size() / 4);
+      next_solve_ += std::max(kViewsAtOnce, directions_.size() / 3);
     }
     update_.elements = {0};
     return update_;
