@@ -77,8 +77,10 @@ TEST(DepthImages, OtherSizesAreReadAtTheNearestPixel) {
   ASSERT_EQ(fine.size(), cv::Size(kWidth, kHeight));
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
-      EXPECT_FLOAT_EQ(coarse.at<float>(y, x), 0.1f * (y / 2 * kWidth / 2 + x / 2));
-      EXPECT_FLOAT_EQ(fine.at<float>(y, x), 0.1f * ((3 * y + 1) * 3 * kWidth + 3 * x + 1));
+      EXPECT_FLOAT_EQ(coarse.at<float>(y, x),
+                      0.1f * static_cast<float>(y / 2 * kWidth / 2 + x / 2));
+      EXPECT_FLOAT_EQ(fine.at<float>(y, x),
+                      0.1f * static_cast<float>((3 * y + 1) * 3 * kWidth + 3 * x + 1));
     }
   }
 }
