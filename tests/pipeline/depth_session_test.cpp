@@ -64,9 +64,8 @@ const fitting::depth_quads::DepthQuads& quads_of(const Reconstruction& fitted) {
 }
 
 // Files hold the truth to half a step of .1 mm, traced through the lens; the z-buffer joins the
-// projected vertices by straight lines. Over an edge of the knot's 4,000 vertices (4 mm, 4 px of
-// 320) the barrel bends a line by thousandths of a pixel, so that only pixels beside outlines,
-// which may show another surface, differ by more: a seventh of them here.
+// projected vertices by straight lines, which over an edge of 4 pixels the barrel bends by thousandths
+// of one. So no more than cells whose middle lies on an outline, where two surfaces meet, differ.
 TEST_F(DepthSession, QuadsFromFilesAreThoseFromTheMesh) {
   ProgressSink sink;
   const Reconstruction from_files = fitted("session", sink), from_mesh = fitted("mesh", sink);
