@@ -39,6 +39,10 @@ class Fitter {
   /// observation need be kept for undo or for a comparison.
   [[nodiscard]] virtual bool needs_images() const { return true; }
 
+  /// Whether `integrate` looks at depths that a sensor measured. Where it does not, they are not
+  /// read.
+  [[nodiscard]] virtual bool needs_depth() const { return false; }
+
   /// Integrates one view. The returned reference is valid until the next call.
   virtual const ModelUpdate& integrate(const core::Observation& observation) = 0;
 

@@ -44,9 +44,11 @@ void FitStage::observe(const capture::Frame& frame, core::StageTimes& times, Pos
 
   // Read the image.
   core::SampleBatch* samples = nullptr;
+  cv::Mat depth_m;
   {
     const auto timing = times.measure("sample");
     samples = &parts_.observer.sample(frame.image);
+    if (parts_.depth != nullptr) depth_m = parts_.depth->read(frame.index);
   }
   double gain = 1;
   if (parts_.photometric.exposure) {
@@ -65,7 +67,8 @@ void FitStage::observe(const capture::Frame& frame, core::StageTimes& times, Pos
   fitting::note_seen(*samples, statistics_.seen);
   integrated_.push_back({frame.index, camera_from_object, gain});
   const core::Observation observation{
-      frame.index, frame.image, camera, camera_from_object, parts_.observer.view(), *samples, gain};
+      frame.index, frame.image, camera, camera_from_object, parts_.observer.view(),
+      *samples,    gain,        depth_m};
   {
     const auto timing = times.measure("evidence");
     parts_.evidence.look_at(frame, posed.camera_from_board, observation);

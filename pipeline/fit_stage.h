@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "capture/session/depth_images.h"
 #include "capture/session/session.h"
 #include "pipeline/frame_statistics.h"
 #include "pipeline/hold_out.h"
@@ -40,6 +41,7 @@ class FitStage {
     fitting::Fitter* mean;      ///< integrates the same samples for comparison; may be null
     CaptureEvidence& evidence;  ///< looks at what is fitted
     HoldOut hold_out;
+    const capture::DepthImages* depth = nullptr;  ///< read for every frame that is fitted
     PhotometricOptions photometric = {};
     core::PatchShare share = {};  ///< whose samples are fitted
     /// Asked before a frame's samples are integrated, on the thread that fits; false keeps them

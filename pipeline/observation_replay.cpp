@@ -4,7 +4,7 @@
 namespace sheen::pipeline {
 
 void replay_observations(const capture::Session& session, std::span<const IntegratedView> views,
-                         ViewObserver& observer,
+                         ViewObserver& observer, const capture::DepthImages* depth,
                          const std::function<void(const core::Observation&)>& observe) {
   if (views.empty()) return;
   const auto frames =
@@ -19,7 +19,7 @@ void replay_observations(const capture::Session& session, std::span<const Integr
     core::SampleBatch& samples = observer.sample(frame->image);
     if (view->gain != 1) divide_by_gain(view->gain, samples);
     observe({frame->index, frame->image, camera, view->camera_from_object, observer.view(), samples,
-             view->gain});
+             view->gain, depth != nullptr ? depth->read(frame->index) : cv::Mat()});
     ++view;
   }
 }

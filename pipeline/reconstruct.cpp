@@ -88,6 +88,7 @@ struct Reconstruction::Impl {
   std::optional<CaptureEvidence> evidence;
   std::vector<Finding> findings;
   int next_told = 64;  ///< frames after which a live recording is judged; doubles
+  std::optional<capture::DepthImages> depth;  ///< where the session has some and they are wanted
   std::optional<FitStage> stage;
   FrameListener* listener = nullptr;
   core::StageTimer times;
@@ -112,6 +113,7 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
     choose_texels();
   }
   fitter = make_fitter(options.representation, options.fit, history);
+  if (session.depth && fitter->needs_depth()) depth.emplace(session);
   if (options.with_mean && options.representation != kMean) {
     mean = make_fitter(kMean, {}, mean_history);
   }
@@ -136,6 +138,7 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
       .mean = mean.get(),
       .evidence = *evidence,
       .hold_out = {options.frames.hold_out},
+      .depth = depth ? &*depth : nullptr,
       .photometric = options.photometric,
       .share = options.share,
       .admit = [this](const core::SampleBatch& batch) { return admit(batch, listener); },
@@ -223,7 +226,7 @@ std::unique_ptr<fitting::Fitter> Reconstruction::Impl::make_fitter(
         // Of its own: the other one may be at work on the next frame's samples.
         ViewObserver again(mesh, make_visibility(visibility, mesh, options.threads), options.limits,
                            options.threads);
-        replay_observations(session, views, again, observe);
+        replay_observations(session, views, again, depth ? &*depth : nullptr, observe);
       });
   undoable = remembering.get();
   return remembering;

@@ -34,6 +34,7 @@ nlohmann::ordered_json describe_session(const std::filesystem::path& folder) {
       session.video ? session.video->filename().string() : session.image_pattern.value_or("");
   document["size_px"] = {camera.width_px, camera.height_px};
   document["focal_px"] = {camera.focal_px.x(), camera.focal_px.y()};
+  if (session.depth) document["depth"] = session.depth->pattern;
   if (session.board) {
     const capture::Board board = capture::read_board(*session.board);
     document["board"] = {{"family", board.family}, {"tags", board.tags.size()}};

@@ -145,6 +145,8 @@ void add_synth_command(CommandLine& program, CommandContext& context) {
       .one_of({kWalk, kTurntable})
       .show_default();
   add_image_options(command, *options);
+  command.flag("--depth", session.depth,
+               "Depth images beside the frames, too: depth/%04d.png, without noise");
   command.option("--seed", session.seed, "Seed of path, tremor and noise").type("N").show_default();
   add_common_options(command, context);
   command.action([options, &context] { run_synth(*options, context); });

@@ -147,6 +147,29 @@ void read_frames(SessionReader& reader, Session& session) {
   }
 }
 
+std::optional<DepthFiles> read_depth(SessionReader& reader) {
+  if (!reader.root().contains("depth")) return std::nullopt;
+  const json& depth = reader.object("depth");
+  reader.warn_unknown(depth, {"images", "unit_m"}, "depth.");
+  const auto pattern = reader.inner_path(depth, "images");
+  if (!pattern || !NumberedName::parse(*pattern)) {
+    reader.fail("\"depth\" names no \"images\" by a pattern with one number",
+                "write it like depth/%04d.png");
+  }
+  DepthFiles files{*pattern};
+  const auto unit = depth.find("unit_m");
+  if (unit == depth.end()) {
+    reader.fail("\"depth\" does not say its \"unit_m\"",
+                "give the metres of a step of the numbers: 0.001 for millimetres");
+  }
+  files.unit_m = unit->is_number() ? unit->get<double>() : 0;
+  if (!(files.unit_m > 0 && files.unit_m <= 1)) {
+    reader.fail("\"unit_m\" of \"depth\" is not above 0 and at most 1",
+                "give the metres of a step of the numbers: 0.001 for millimetres");
+  }
+  return files;
+}
+
 /// What a matrix close to a multiple of a rotation or reflection is; empty for a rotation.
 std::string describe_fault(const Eigen::Matrix3d& A) {
   constexpr double tolerance = 1e-3;
@@ -220,11 +243,13 @@ ImageSize image_size(const Session& session) {
 /// What session.json says of everything but the camera.
 Session read_session(SessionReader& reader, const std::filesystem::path& folder) {
   check_format(reader);
-  reader.warn_unknown(reader.root(),
-                      {"format", "version", "frames", "camera", "board", "poses", "object"}, "");
+  reader.warn_unknown(
+      reader.root(), {"format", "version", "frames", "depth", "camera", "board", "poses", "object"},
+      "");
   Session session;
   session.folder = folder;
   read_frames(reader, session);
+  session.depth = read_depth(reader);
   session.board = reader.inner_file(reader.root(), "board");
   session.poses = reader.inner_file(reader.root(), "poses");
   read_object(reader, session);

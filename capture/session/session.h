@@ -14,6 +14,12 @@
 
 namespace sheen::capture {
 
+/// Depth images beside the frames, as session.json names them.
+struct DepthFiles {
+  std::string pattern;    ///< printf pattern such as depth/%04d.png
+  double unit_m = 0.001;  ///< what a step of their numbers is, (0, 1]
+};
+
 /// A session folder (docs/session-format.md): what session.json says, checked.
 struct Session {
   std::filesystem::path folder;
@@ -22,7 +28,8 @@ struct Session {
   std::optional<std::string> image_pattern;
   std::optional<double> fps;
   std::optional<std::filesystem::path>
-      stamps;  ///< frames.csv: when each frame was taken; wins over fps
+      stamps;                       ///< frames.csv: when each frame was taken; wins over fps
+  std::optional<DepthFiles> depth;  ///< read by DepthImages
   core::CameraModel camera;
   std::optional<std::filesystem::path> camera_file;  ///< camera.yaml, where it was read from a file
   std::optional<std::filesystem::path> board;        ///< board.yaml

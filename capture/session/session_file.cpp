@@ -48,6 +48,9 @@ void write_session_file(const std::filesystem::path& folder, const SessionFile& 
   put(frames, "fps", session.fps);
   put(frames, "stamps", session.stamps);
   ordered_json document{{"format", "sheen-session"}, {"version", 1}, {"frames", std::move(frames)}};
+  if (session.depth) {
+    document["depth"] = {{"images", session.depth->pattern}, {"unit_m", session.depth->unit_m}};
+  }
   if (!session.camera.empty()) document["camera"] = session.camera;
   put(document, "board", session.board);
   put(document, "poses", session.poses);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "capture/session/session.h"
+
 #include <Eigen/Geometry>
 
 #include <cstddef>
@@ -20,6 +22,7 @@ struct SessionFile {
   std::optional<std::string> images{};  ///< printf pattern, images/%04d.png
   std::optional<double> fps{};
   std::optional<std::string> stamps{};
+  std::optional<DepthFiles> depth{};
   std::string camera = "camera.yaml";  ///< empty: it is not known yet
   std::optional<std::string> board{};
   std::optional<std::string> poses{};

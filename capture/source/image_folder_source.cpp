@@ -38,10 +38,11 @@ class ImageFolderSource : public FrameSource {
         size_(size),
         range_(range),
         fps_(fps) {
-    count_images();
-    check_range(session_folder_ / name_.folder(), range_, count_);
+    const auto [first, count] = find_images(session_folder_, name_);
+    check_range(session_folder_ / name_.folder(), range_, count);
+    first_ = first;
     next_ = range_.start;
-    end_ = std::min(count_, range_.end.value_or(count_));
+    end_ = std::min(count, range_.end.value_or(count));
     waiting_ = read();
   }
 
@@ -55,26 +56,6 @@ class ImageFolderSource : public FrameSource {
   [[nodiscard]] SourceReport report() const override { return {0, reader_.notes()}; }
 
  private:
-  void count_images() {
-    const auto folder = session_folder_ / name_.folder();
-    if (const auto kind = unreadable_ending(name_.at(0))) {
-      throw core::bad_input(session_folder_ / name_.at(0),
-                            "pictures of " + kind->name + " are not read", kind->remedy);
-    }
-    const std::set<int> numbers = find_numbers(folder, name_);
-    if (numbers.empty() || *numbers.begin() > 1) {
-      throw core::bad_input(session_folder_ / name_.at(0), "there is no first image",
-                            "number the images from 0 or 1");
-    }
-    first_ = *numbers.begin();
-    count_ = static_cast<int>(numbers.size());
-    if (*numbers.rbegin() - first_ == count_ - 1) return;
-    int missing = first_;
-    while (numbers.contains(missing)) ++missing;
-    throw core::bad_input(session_folder_ / name_.at(missing), "this image is missing",
-                          "number the images without gaps");
-  }
-
   std::optional<Frame> read() {
     if (next_ >= end_) return std::nullopt;
     cv::Mat image = reader_.read(session_folder_ / name_.at(first_ + next_), size_);
@@ -90,7 +71,6 @@ class ImageFolderSource : public FrameSource {
   FrameRange range_;
   double fps_;
   int first_ = 0;  // number of the first image
-  int count_ = 0;
   int next_ = 0;
   int end_ = 0;
   StillReader reader_;
@@ -143,6 +123,24 @@ std::optional<int> NumberedName::number_in(const std::string& file_name) const {
     return std::nullopt;
   }
   return number;
+}
+
+NumberedImages find_images(const std::filesystem::path& session_folder, const NumberedName& name) {
+  if (const auto kind = unreadable_ending(name.at(0))) {
+    throw core::bad_input(session_folder / name.at(0),
+                          "pictures of " + kind->name + " are not read", kind->remedy);
+  }
+  const std::set<int> numbers = find_numbers(session_folder / name.folder(), name);
+  if (numbers.empty() || *numbers.begin() > 1) {
+    throw core::bad_input(session_folder / name.at(0), "there is no first image",
+                          "number the images from 0 or 1");
+  }
+  const NumberedImages images{*numbers.begin(), static_cast<int>(numbers.size())};
+  if (*numbers.rbegin() - images.first == images.count - 1) return images;
+  int missing = images.first;
+  while (numbers.contains(missing)) ++missing;
+  throw core::bad_input(session_folder / name.at(missing), "this image is missing",
+                        "number the images without gaps");
 }
 
 std::unique_ptr<FrameSource> open_image_folder(const std::filesystem::path& session_folder,

@@ -28,6 +28,16 @@ class NumberedName {
   std::size_t digits_ = 0;
 };
 
+/// Numbers of the images of a folder.
+struct NumberedImages {
+  int first = 0;  ///< 0 or 1
+  int count = 0;
+};
+
+/// Those that the folder holds. Throws core::Error (bad_input): a kind that is not read, no image,
+/// a gap in the numbers.
+NumberedImages find_images(const std::filesystem::path& session_folder, const NumberedName& name);
+
 /// Images of a folder as frames, in the order of their numbers; the first number is 0 or 1. Times
 /// are index / `fps`, or one second per image. Throws core::Error (bad_input): no image, a gap
 /// in the numbers, an image that cannot be read or has another size (the first one is read before

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "capture/source/still_reader.h"
 
-#include "capture/files/file_handle.h"
 #include "capture/source/jpeg_decoder.h"
+#include "capture/source/picture_bytes.h"
 #include "core/diagnostics/error.h"
 
 #include <fmt/format.h>
@@ -13,27 +13,12 @@
 namespace sheen::capture {
 namespace {
 
-constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 30;
-constexpr int kMostSide_px = 1 << 15;
-/// Of one byte: zlib packs 1032 to 1, and a byte may hold eight pixels. No other kind packs more.
-constexpr std::uint64_t kMostPixelsOfAByte = 8 * 1032;
-
 core::Error unreadable(const std::filesystem::path& path, const std::string& fault) {
   return core::bad_input(path, fault, "check that it is complete, or leave it out");
 }
 
 core::Error cut_short(const std::filesystem::path& path) {
   return unreadable(path, "cannot be read as an image: it is cut short or damaged");
-}
-
-std::vector<std::uint8_t> all_bytes(const std::filesystem::path& path) {
-  const FileHandle file = FileHandle::open_to_read(path);
-  const std::uint64_t size = file.size();
-  if (size == 0) throw unreadable(path, "is empty");
-  if (size > kMostBytes) throw unreadable(path, "is larger than a picture can be");
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
-  if (file.read_at(0, bytes) != bytes.size()) throw unreadable(path, "cannot be read to its end");
-  return bytes;
 }
 
 /// Refuses what the headers show already: before memory is asked for.
@@ -52,13 +37,7 @@ void check_headers(const std::filesystem::path& path, const ImageFacts& facts,
   if (!facts.colour_fault.empty()) {
     throw core::bad_input(path, facts.colour_fault, "convert it to RGB of 8 or 16 bits");
   }
-  if (!facts.size) return;
-  const auto [width_px, height_px] = *facts.size;
-  if (width_px < 1 || height_px < 1 || width_px > kMostSide_px || height_px > kMostSide_px) {
-    throw unreadable(path, "cannot be read as an image");
-  }
-  const auto pixels = static_cast<std::uint64_t>(width_px) * static_cast<std::uint64_t>(height_px);
-  if (pixels > kMostPixelsOfAByte * bytes) throw cut_short(path);
+  if (facts.size) check_picture_size(path, *facts.size, bytes);
 }
 
 cv::Mat decoded(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes,
@@ -81,14 +60,7 @@ cv::Mat decoded(const std::filesystem::path& path, const std::vector<std::uint8_
 }  // namespace
 
 cv::Mat StillReader::read(const std::filesystem::path& path, std::optional<ImageSize> expected) {
-  std::error_code no_throw;
-  if (!std::filesystem::exists(path, no_throw)) {
-    throw core::bad_input(path, "there is no such image", "check the path");
-  }
-  if (!std::filesystem::is_regular_file(path, no_throw)) {  // a folder, a pipe
-    throw core::bad_input(path, "is no file", "put an image there");
-  }
-  const std::vector<std::uint8_t> bytes = all_bytes(path);
+  const std::vector<std::uint8_t> bytes = read_picture_bytes(path);
   const ImageFacts facts = read_image_facts(bytes);
   check_headers(path, facts, bytes.size());
 

@@ -98,6 +98,28 @@ Exposure RenderCamera::expose(const Scene& scene, const Eigen::Isometry3d& board
   return exposure;
 }
 
+cv::Mat RenderCamera::depth_m(const Scene& scene, const Eigen::Isometry3d& board_from_camera,
+                              int threads) const {
+  const Eigen::Vector3f eye = board_from_camera.translation().cast<float>();
+  const Eigen::Matrix3f board_from_axes = board_from_camera.linear().cast<float>();
+  cv::Mat depth(height_px_, width_px_, CV_32FC1);
+  core::parallel_for(
+      static_cast<std::size_t>(height_px_), threads, [&](std::size_t begin, std::size_t end) {
+        for (int y = static_cast<int>(begin); y < static_cast<int>(end); ++y) {
+          for (int x = 0; x < width_px_; ++x) {
+            // The ray's z is 1, so that along it unit depth is its length.
+            const Eigen::Vector3f direction = ray(x, y, 0.5f, 0.5f);
+            const float length = direction.norm();
+            depth.at<float>(y, x) =
+                direction.allFinite()
+                    ? scene.distance_m(eye, board_from_axes * direction / length) / length
+                    : 0.0f;
+          }
+        }
+      });
+  return depth;
+}
+
 cv::Mat develop(const cv::Mat& light, const SensorNoise& noise, std::uint32_t seed) {
   cv::Mat image(light.size(), CV_8UC3);
   for (int y = 0; y < light.rows; ++y) {

@@ -28,6 +28,11 @@ class RenderCamera {
   [[nodiscard]] Exposure expose(const Scene& scene, const Eigen::Isometry3d& board_from_camera,
                                 int samples, std::uint32_t seed, int threads) const;
 
+  /// Depth along the optical axis of what the middle of every pixel shows, metres: CV_32FC1, 0
+  /// where nothing is. The result does not depend on `threads`.
+  [[nodiscard]] cv::Mat depth_m(const Scene& scene, const Eigen::Isometry3d& board_from_camera,
+                                int threads) const;
+
  private:
   /// Ray through a place inside pixel (x, y), `fx` and `fy` in [0, 1) from its upper left corner.
   [[nodiscard]] Eigen::Vector3f ray(int x, int y, float fx, float fy) const;

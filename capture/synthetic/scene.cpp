@@ -23,6 +23,7 @@ namespace {
 constexpr double kTurnRad = 0.35;          // of the object on the board
 constexpr float kPatternOfRadius = 0.18f;  // half a band over the radius of the object
 constexpr float kMeanBoardReflectance = 0.5f;
+constexpr float kFlattest = 1e-3f;  // of a ray that meets the board: z of its direction
 
 Eigen::Isometry3d placed_on_board(const core::Mesh& mesh, float lift_m) {
   const Eigen::AlignedBox3f box = core::bounds_of(mesh);
@@ -115,7 +116,7 @@ Eigen::Vector3f Scene::Impl::object_value(const core::RayHit& hit, const Eigen::
 
 Eigen::Vector3f Scene::Impl::board_value(const Eigen::Vector3f& origin,
                                          const Eigen::Vector3f& direction) const {
-  if (direction.z() > -1e-3f) return 0.5f * room_radiance(studio, direction);
+  if (direction.z() > -kFlattest) return 0.5f * room_radiance(studio, direction);
   const Eigen::Vector3f foot = origin - origin.z() / direction.z() * direction;
   return print.reflectance(foot.x(), foot.y()) / std::numbers::pi_v<float> *
          ground.irradiance(foot.x(), foot.y());
@@ -152,6 +153,12 @@ Scene::Sight Scene::trace(const Eigen::Vector3f& origin, const Eigen::Vector3f& 
       hit ? scene.object_value(*hit, origin + hit->distance * direction, direction)
           : scene.board_value(origin, direction);
   return {scene.studio.exposure * radiance, hit.has_value()};
+}
+
+float Scene::distance_m(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const {
+  const auto hit = impl_->caster.first_hit(origin, direction, 0, std::numeric_limits<float>::max());
+  if (hit) return hit->distance;
+  return direction.z() < -kFlattest ? -origin.z() / direction.z() : 0.0f;
 }
 
 }  // namespace sheen::capture::synthetic

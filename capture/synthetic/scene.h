@@ -38,6 +38,9 @@ class Scene {
   };
   /// What a ray sees; board frame, `direction` of unit length.
   [[nodiscard]] Sight trace(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const;
+  /// How far along it the ray meets object or board; 0 where it meets neither.
+  [[nodiscard]] float distance_m(const Eigen::Vector3f& origin,
+                                 const Eigen::Vector3f& direction) const;
 
  private:
   struct Impl;

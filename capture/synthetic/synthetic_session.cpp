@@ -18,10 +18,14 @@
 #include "core/mesh/read_mesh.h"
 
 #include <Eigen/Geometry>
+#include <opencv2/imgcodecs.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <cstdio>
+#include <limits>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -77,14 +81,47 @@ void write_common(const fs::path& folder, const Scene& scene, const SyntheticOpt
                   coarser ? torus_knot(options.mesh_vertices) : scene.object());
 }
 
+/// Fine enough for what is near, far-reaching enough for what is large; of a Kinect's or better.
+double depth_unit_m(const Scene& scene) {
+  constexpr double large_m = 0.25;
+  return scene.object_radius_m() < large_m ? 1e-4 : 1e-3;
+}
+
+std::string numbered_png(std::size_t number) {
+  std::array<char, 32> name{};
+  std::snprintf(name.data(), name.size(), "%04zu.png", number);
+  return name.data();
+}
+
+void write_bytes(const fs::path& file, const std::vector<std::uint8_t>& png) {
+  core::write_file(file, {reinterpret_cast<const char*>(png.data()), png.size()});
+}
+
+/// A depth image; what is farther than its 16 bits reach is not known.
+std::vector<std::uint8_t> encode_depth(const cv::Mat& depth_m, double unit_m) {
+  constexpr double most = std::numeric_limits<std::uint16_t>::max();
+  cv::Mat steps;
+  depth_m.convertTo(steps, CV_16U, 1 / unit_m);
+  steps.setTo(0, steps == most);
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", steps, png);
+  return png;
+}
+
 void write_recording(const fs::path& folder, const Scene& scene, const core::CameraModel& camera,
                      const SyntheticOptions& options, Counter& counter) {
   const bool turns = options.path == PathKind::turntable;
   const CameraPath path(turns ? turntable_path(0) : recording_path(options.seed),
                         scene.object_centre(), scene.object_radius_m());
   const std::vector<Trajectory::Entry> poses = walk(path, options.frames, turns);
-  write_common(folder, scene, options, camera,
-               {.video = "frames.avi", .fps = kFps, .board = "board.yaml"});
+  const double unit_m = depth_unit_m(scene);
+  write_common(
+      folder, scene, options, camera,
+      {.video = "frames.avi",
+       .fps = kFps,
+       .depth = options.depth ? std::optional(DepthFiles{"depth/%04d.png", unit_m}) : std::nullopt,
+       .board = "board.yaml"});
+  if (options.depth) fs::create_directories(folder / "depth");
   write_board(folder / "board.yaml", scene.board());
   write_trajectory(folder / "truth_poses.txt", poses);
 
@@ -96,6 +133,11 @@ void write_recording(const fs::path& folder, const Scene& scene, const core::Cam
     const Exposure exposure = render_camera.expose(scene, poses[i].board_from_camera,
                                                    options.samples, seed, options.threads);
     video.append(develop(exposure.light, SensorNoise{}, hash(seed, 1U)));
+    if (options.depth) {
+      const cv::Mat depth_m =
+          render_camera.depth_m(scene, poses[i].board_from_camera, options.threads);
+      write_bytes(folder / "depth" / numbered_png(i), encode_depth(depth_m, unit_m));
+    }
     counter.advance();
   }
   video.close();
@@ -116,11 +158,8 @@ void write_held_out(const fs::path& folder, const Scene& scene, const core::Came
     const Exposure exposure = render_camera.expose(
         scene, poses[i].board_from_camera, kHeldOutSamplesFactor * options.samples,
         hash(options.seed, static_cast<std::uint32_t>(i), 2U), options.threads);
-    std::array<char, 32> name{};
-    std::snprintf(name.data(), name.size(), "%04zu.png", i);
-    const fs::path file = folder / "images" / name.data();
-    const auto png = core::encode_png(develop(exposure.light, kNoNoise, 0));
-    core::write_file(file, {reinterpret_cast<const char*>(png.data()), png.size()});
+    write_bytes(folder / "images" / numbered_png(i),
+                core::encode_png(develop(exposure.light, kNoNoise, 0)));
     counter.advance();
   }
 }

@@ -33,6 +33,7 @@ struct SyntheticOptions {
   int held_out = 12;       ///< views apart from it, [0, 10000]
   int samples = 8;         ///< rays per pixel of a frame, [1, 256]
   int jpeg_quality = 93;   ///< of the video, [1, 100]
+  bool depth = false;      ///< depth images of the recording's frames, too, without noise
   std::uint32_t seed = 1;  ///< of path, tremor and noise
   int threads = 1;         ///< >= 1
 
@@ -50,10 +51,10 @@ Scene make_scene(const SyntheticOptions& options);
 /// Called after every image; an exception it throws ends the work and leaves nothing behind.
 using Progress = std::function<void(int done, int total)>;
 
-/// Writes a session folder (docs/session-format.md) with frames.avi, board.yaml, truth_poses.txt
-/// and, for `held_out` > 0, the session held_out/ of noise-free PNG views with their exact poses.
-/// The same options give the same bytes whatever `threads` is. Throws core::Error when the place
-/// cannot be written.
+/// Writes a session folder (docs/session-format.md) with frames.avi, board.yaml, truth_poses.txt,
+/// on request depth/%04d.png, and, for `held_out` > 0, the session held_out/ of noise-free PNG
+/// views with their exact poses. The same options give the same bytes whatever `threads` is. Throws
+/// core::Error when the place cannot be written.
 void write_synthetic_session(const std::filesystem::path& folder, const SyntheticOptions& options,
                              const Progress& progress);
 

@@ -21,6 +21,9 @@ struct Observation {
   const VertexView& view;                ///< every vertex of the mesh as this camera sees it
   const SampleBatch& samples;            ///< radiance at the vertices that are seen
   double gain = 1;                       ///< the image's exposure: samples are its values over this
+  /// CV_32FC1 of the image's size: depth along the optical axis as a sensor measured it, metres, 0
+  /// where it did not; empty where there is none, or no fitter wants it (Fitter::needs_depth).
+  cv::Mat depth_m{};
 };
 
 }  // namespace sheen::core

@@ -100,7 +100,10 @@ void integrate_all(const Observations& observations, int threads, fitting::Fitte
   };
   if (fitter.needs_images()) {
     pipeline::ViewObserver observer = make_observer(observations.mesh, threads);
-    pipeline::replay_observations(observations.session, observations.views, observer, integrate);
+    std::optional<capture::DepthImages> depth;
+    if (observations.session.depth && fitter.needs_depth()) depth.emplace(observations.session);
+    pipeline::replay_observations(observations.session, observations.views, observer,
+                                  depth ? &*depth : nullptr, integrate);
     return;
   }
   const cv::Mat no_image;

@@ -40,6 +40,10 @@ OptionTable option_table(Options& options) {
                     "By how much quads overlap on every side, pixels"),
       number_option("median", options.median, 1, kMostMedian,
                     "Side of the median filter on depths, odd, 1 for none"),
+      choice_option("depths", options.depths,
+                    {{"session", Depths::session}, {"mesh", Depths::mesh}},
+                    "Depths are those of the session's depth images where it has some, or the "
+                    "mesh's"),
       number_option("cameras", options.cameras, 1, kMostCameras,
                     "Photographs drawn into one image"),
       choice_option("quad-blending", options.blending,

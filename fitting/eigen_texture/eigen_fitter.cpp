@@ -3,10 +3,10 @@
 
 #include "core/diagnostics/error.h"
 #include "fitting/detail/weighted_mean.h"
-#include "fitting/eigen_texture/batch_fit.h"
 #include "fitting/eigen_texture/eigen_texture.h"
-#include "fitting/eigen_texture/incremental_fit.h"
+#include "fitting/eigen_texture/fit_bases.h"
 #include "fitting/eigen_texture/texel_reader.h"
+#include "fitting/eigen_texture/view_history.h"
 #include "fitting/kept_views/mean_keeper.h"
 
 #include <Eigen/Geometry>
@@ -19,8 +19,12 @@
 namespace sheen::fitting::eigen_texture {
 namespace {
 
-/// An update costs about the same for one view and for a few.
+/// Of every texel the incremental fit keeps so many observations: 8 bytes each.
+constexpr std::size_t kMostPerTexel = 64;
+/// While views arrive bases are found anew with so many more views, at least, or a third more.
 constexpr std::size_t kViewsAtOnce = 8;
+/// Sweeps of expectation maximisation for what is only looked at.
+constexpr int kLiveSweeps = 2;
 /// Part of an atlas that charts fill, about.
 constexpr float kFilled = 0.6f;
 
@@ -49,11 +53,10 @@ class EigenFitter final : public Fitter {
         vertex_means_(mesh, threads),
         model_(mesh, atlas_of(mesh, options)),
         reader_(mesh, model_.mean().atlas(), threads),
-        means_(reader_.used().size()) {
-    if (options.solve == Solve::incremental) {
-      incremental_.emplace(reader_.used().size(), static_cast<std::size_t>(options.bases), threads);
-    }
-  }
+        means_(reader_.used().size()),
+        history_(reader_.used().size(), options.solve == Solve::incremental
+                                            ? std::optional(kMostPerTexel)
+                                            : std::nullopt) {}
 
   const ModelUpdate& integrate(const core::Observation& observation) override {
     vertex_means_.integrate(observation);
@@ -67,8 +70,11 @@ class EigenFitter final : public Fitter {
       store_mean(texel.slot);
     }
     directions_.push_back(model_.direction_to(core::eye_in_object(observation.camera_from_object)));
-    views_.push_back(std::move(seen));
-    if (incremental_ && views_.size() == kViewsAtOnce) grow();
+    history_.add(std::move(seen));
+    if (options_.solve == Solve::incremental && directions_.size() == next_solve_) {
+      solve(kLiveSweeps);
+      next_solve_ += std::max(kViewsAtOnce, directions_.size() / 3);
+    }
     update_.elements = {0};
     return update_;
   }
@@ -77,13 +83,7 @@ class EigenFitter final : public Fitter {
     vertex_means_.finish();
     model_.set_vertex_means(vertex_means_.means());
     fill_unseen();
-    if (incremental_) {
-      grow();
-    } else {
-      model_.set_bases(
-          fit_bases(views_, used_means(), static_cast<std::size_t>(options_.bases), threads_),
-          directions_);
-    }
+    solve(kSweeps);
     update_.elements = {0};
     return update_;
   }
@@ -98,11 +98,11 @@ class EigenFitter final : public Fitter {
     return means;
   }
 
-  /// Takes the views that wait into the bases.
-  void grow() {
-    incremental_->add(views_, used_means());
-    views_.clear();
-    model_.set_bases(incremental_->channels(), directions_);
+  /// Bases from the views so far.
+  void solve(int sweeps) {
+    model_.set_bases(fit_bases(history_.views(), used_means(),
+                               static_cast<std::size_t>(options_.bases), sweeps, threads_),
+                     directions_);
   }
 
   void store_mean(std::size_t slot) {
@@ -143,8 +143,8 @@ class EigenFitter final : public Fitter {
   EigenTexture model_;
   TexelReader reader_;
   std::vector<detail::WeightedMean> means_;
-  std::optional<IncrementalFit> incremental_;
-  std::vector<std::vector<SeenTexel>> views_;  ///< all, or those that wait for the incremental fit
+  ViewHistory history_;
+  std::size_t next_solve_ = kViewsAtOnce;
   std::vector<Eigen::Vector3f> directions_;
   ModelUpdate update_;
 };

@@ -22,7 +22,6 @@ using Eigen::VectorXf;
 constexpr float kLeastNoise = 1e-4f;        // squared grey levels
 constexpr double kLeastMeanSquare = 1e-4;   // of a basis that is given out
 constexpr double kRelativeRounding = 1e-9;  // of singular values, squared
-constexpr int kSweeps = 12;
 
 /// (F^T W F + diag(ridge))^-1 F^T W x.
 VectorXf ridge_regression(const MatrixXf& rows, const VectorXf& value, const VectorXf& weight,
@@ -56,19 +55,6 @@ Seen seen_of(const MatrixXf& factor, const Values& value, const Weights& weight)
     seen.weight[next++] = weight[i];
   }
   return seen;
-}
-
-void solve_coefficients(const Deviations& deviations, float noise, int threads, Factors& factors) {
-  core::parallel_for(
-      static_cast<std::size_t>(factors.coefficients.rows()), threads,
-      [&](std::size_t begin, std::size_t end) {
-        for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
-          const Seen seen =
-              seen_of(factors.basis, deviations.value.col(v), deviations.weight.col(v));
-          factors.coefficients.row(v) = explain(seen.rows, seen.value, seen.weight, noise);
-        }
-      },
-      4);
 }
 
 void solve_basis(const Deviations& deviations, float noise, int threads, Factors& factors) {
@@ -184,11 +170,26 @@ VectorXf ridge_of(const Factors& factors, float noise) {
   return noise * mean_square.cwiseMax(least_square).cwiseInverse();
 }
 
-Factors factorise(const Deviations& deviations, Index rank, int threads) {
+MatrixXf explain_all(const MatrixXf& basis, const Deviations& deviations, float noise,
+                     int threads) {
+  MatrixXf coefficients(deviations.value.cols(), basis.cols());
+  core::parallel_for(
+      static_cast<std::size_t>(coefficients.rows()), threads,
+      [&](std::size_t begin, std::size_t end) {
+        for (auto v = static_cast<Index>(begin); v < static_cast<Index>(end); ++v) {
+          const Seen seen = seen_of(basis, deviations.value.col(v), deviations.weight.col(v));
+          coefficients.row(v) = explain(seen.rows, seen.value, seen.weight, noise);
+        }
+      },
+      4);
+  return coefficients;
+}
+
+Factors factorise(const Deviations& deviations, Index rank, int sweeps, int threads) {
   Factors factors = start(deviations, rank);
-  for (int sweep = 0; sweep < kSweeps && factors.rank() > 0; ++sweep) {
+  for (int sweep = 0; sweep < sweeps && factors.rank() > 0; ++sweep) {
     const float noise = deviations.noise_of(factors);
-    solve_coefficients(deviations, noise, threads, factors);
+    factors.coefficients = explain_all(factors.basis, deviations, noise, threads);
     solve_basis(deviations, noise, threads, factors);
     factors = canonical(factors, factors.rank());
   }

@@ -43,8 +43,13 @@ struct Deviations {
 Eigen::VectorXf explain(const Eigen::MatrixXf& basis, const Eigen::VectorXf& value,
                         const Eigen::VectorXf& weight, float noise);
 
-/// Bases by expectation maximisation over what was seen: holes never count. Deterministic.
-Factors factorise(const Deviations& deviations, Eigen::Index rank, int threads);
+/// `explain` for every view (column).
+Eigen::MatrixXf explain_all(const Eigen::MatrixXf& basis, const Deviations& deviations, float noise,
+                            int threads);
+
+/// Bases by `sweeps` of expectation maximisation over what was seen: holes never count. The same on
+/// any number of threads.
+Factors factorise(const Deviations& deviations, Eigen::Index rank, int sweeps, int threads);
 
 /// A texel's row of the bases: min sum w (x - b.c)^2 + sum ridge_k b_k^2 over its views.
 /// `coefficients` has a row per view that saw it.

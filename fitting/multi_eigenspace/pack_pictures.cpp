@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/multi_eigenspace/pack_pictures.h"
 
+#include "fitting/multi_eigenspace/in_steps.h"
+
 #include <opencv2/imgproc.hpp>
 
 #include <algorithm>
@@ -12,24 +14,8 @@ namespace sheen::fitting::multi_eigenspace {
 namespace {
 
 constexpr int kValues = 4;
-using Rows = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// Pictures as rows of numbers, each value multiplied by the root of its pixel's weight.
-Rows weighted_rows(std::span<const cv::Mat> pictures, const cv::Mat& weights) {
-  const auto pixels = static_cast<Eigen::Index>(weights.total());
-  Rows rows(static_cast<Eigen::Index>(pictures.size()), kValues * pixels);
-  const auto* const weight = weights.ptr<float>();
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-    const auto* const values = pictures[static_cast<std::size_t>(i)].ptr<std::uint8_t>();
-    for (Eigen::Index p = 0; p < pixels; ++p) {
-      const float root = std::sqrt(weight[p]);
-      for (int c = 0; c < kValues; ++c) {
-        rows(i, kValues * p + c) = root * static_cast<float>(values[kValues * p + c]);
-      }
-    }
-  }
-  return rows;
-}
+/// Pixels whose products are summed at once.
+constexpr Eigen::Index kBlock = 1024;
 
 std::uint8_t grey_level(double value) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0, 255.0)));
@@ -52,23 +38,53 @@ void store_image(const Eigen::VectorXf& image, const cv::Size& size, Eigenspace&
 }  // namespace
 
 cv::Mat pixel_weights(std::span<const cv::Mat> pictures) {
-  cv::Mat sum(pictures.front().size(), CV_32FC1, cv::Scalar(0));
+  const auto count = static_cast<int>(pictures.size());
+  cv::Mat sum(pictures.front().size(), CV_32SC1, cv::Scalar(0));
   for (const cv::Mat& picture : pictures) {
     cv::Mat coverage;
     cv::extractChannel(picture, coverage, 3);
-    cv::accumulate(coverage, sum);
+    cv::add(sum, coverage, sum, cv::noArray(), CV_32S);
   }
-  return sum / (255.0 * static_cast<double>(pictures.size()));
+  cv::Mat weights(sum.size(), CV_8UC1);
+  std::transform(sum.begin<int>(), sum.end<int>(), weights.begin<std::uint8_t>(), [&](int covered) {
+    return static_cast<std::uint8_t>((covered + count - 1) / count);
+  });
+  return weights;
 }
 
 Gram gram_of(std::span<const cv::Mat> pictures, const cv::Mat& weights) {
-  Rows rows = weighted_rows(pictures, weights);
-  rows.rowwise() -= rows.colwise().mean().eval();
-  const double values = kValues * std::max(cv::sum(weights)[0], 1e-6);
-  Eigen::MatrixXf products = Eigen::MatrixXf::Zero(rows.rows(), rows.rows());
-  products.selfadjointView<Eigen::Lower>().rankUpdate(rows);
-  Gram gram = products.cast<double>().selfadjointView<Eigen::Lower>();
-  return gram / values;
+  const auto count = static_cast<Eigen::Index>(pictures.size());
+  const auto pixels = static_cast<Eigen::Index>(weights.total());
+  // Whole numbers below 2^53: 255^3 of them fit for each of half a billion values.
+  Gram sums = Gram::Zero(count, count);
+  for (Eigen::Index first = 0; first < pixels; first += kBlock) {
+    const Eigen::Index block = std::min(kBlock, pixels - first);
+    Eigen::MatrixXd values(kValues * block, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      values.col(i) =
+          Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>>(
+              pictures[static_cast<std::size_t>(i)].ptr<std::uint8_t>() + kValues * first,
+              kValues * block)
+              .cast<double>();
+    }
+    Eigen::MatrixXd weighted = values;
+    for (Eigen::Index p = 0; p < block; ++p) {
+      weighted.middleRows(kValues * p, kValues) *= weights.ptr<std::uint8_t>()[first + p];
+    }
+    sums.triangularView<Eigen::Lower>() += values.transpose() * weighted;
+  }
+  sums.triangularView<Eigen::StrictlyUpper>() = sums.transpose();
+
+  const Eigen::VectorXd with_mean = sums.rowwise().sum() / static_cast<double>(count);
+  const double mean_square = sums.sum() / static_cast<double>(count * count);
+  const double all = kValues * std::max(cv::sum(weights)[0], 1.0);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double centred = (sums(i, j) - with_mean[i]) - (with_mean[j] - mean_square);
+      sums(i, j) = in_steps(centred / all, kProductBits);
+    }
+  }
+  return sums;
 }
 
 PackedSpace pack_pictures(std::span<const cv::Mat> pictures, const cv::Mat& weights,

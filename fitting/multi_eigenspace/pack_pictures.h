@@ -11,11 +11,12 @@
 
 namespace sheen::fitting::multi_eigenspace {
 
-/// How much each pixel of pictures counts: the mean part of them that the object covers, in [0, 1].
-/// CV_32FC1. `pictures` (CV_8UC4) are not empty.
+/// How much each pixel of pictures counts: the mean part of them that the object covers, in 255ths,
+/// rounded up. CV_8UC1. `pictures` (CV_8UC4) are not empty.
 cv::Mat pixel_weights(std::span<const cv::Mat> pictures);
 
 /// Inner products of pictures less their mean, over the sum of the weights and the four channels.
+/// From sums of whole numbers, which are exact in any order: the same on every processor.
 Gram gram_of(std::span<const cv::Mat> pictures, const cv::Mat& weights);
 
 /// A space and what some views are in it.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/multi_eigenspace/select_groups.h"
 
+#include "fitting/multi_eigenspace/in_steps.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +18,7 @@ constexpr double kImageCost = 0.5;
 /// What a residual costs beside a picture of 8 bits a value: 1/2 log2(1 + MSE) bits.
 double residual_cost(double mean_square) {
   constexpr double bits = 8;
-  return 0.5 * std::log2(1 + mean_square) / bits;
+  return in_steps(0.5 * std::log2(1 + mean_square) / bits, kGainBits);
 }
 
 double overlap_gain(const ViewGroup& a, const ViewGroup& b) {

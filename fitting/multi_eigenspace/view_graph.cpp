@@ -2,6 +2,7 @@
 #include "fitting/multi_eigenspace/view_graph.h"
 
 #include "core/directions/view_sphere.h"
+#include "fitting/multi_eigenspace/in_steps.h"
 
 #include <algorithm>
 
@@ -15,7 +16,8 @@ ViewGraph::ViewGraph(std::span<const Eigen::Vector3d> directions)
   }
   for (const auto& [a, b] : sphere.borders()) join(a, b);
   const auto cosine = [&](std::uint32_t a, std::uint32_t b) {
-    return directions_[a].dot(directions_[b]);
+    constexpr int bits = 40;
+    return in_steps(directions_[a].dot(directions_[b]), bits);
   };
   for (std::uint32_t i = 0; i < directions.size(); ++i) {
     // One in the same place as another has no triangle of its own.

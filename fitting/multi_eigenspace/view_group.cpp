@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/multi_eigenspace/view_group.h"
 
+#include "fitting/multi_eigenspace/in_steps.h"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -29,7 +31,7 @@ double ViewGroup::residual(const Gram& gram, std::uint32_t view_idx) const {
   const Eigen::VectorXd products = products_with(gram, members, view_idx);
   const double from_mean = gram(view_idx, view_idx) - 2 * products.mean() + mean_square;
   const double held = (combinations.transpose() * (products - with_mean)).squaredNorm();
-  return std::max(from_mean - held, 0.0);
+  return in_steps(std::max(from_mean - held, 0.0), kErrorBits);
 }
 
 ViewGroup principal_axes(const Gram& gram, std::vector<std::uint32_t> members, int most,
@@ -56,21 +58,24 @@ ViewGroup principal_axes(const Gram& gram, std::vector<std::uint32_t> members, i
   double left = std::max(own.trace(), 0.0);
   Eigen::Index used = 0;
   while (used < std::min<Eigen::Index>(most, count - 1) &&
-         left > allowed * static_cast<double>(count) && spread(used) > rounding * largest) {
+         in_steps(left, kErrorBits) > allowed * static_cast<double>(count) &&
+         in_steps(spread(used), kErrorBits) > rounding * largest) {
     left -= spread(used++);
   }
   group.combinations.resize(count, used);
   group.residuals = own.diagonal();
   for (Eigen::Index k = 0; k < used; ++k) {
-    // The sign is free: the same on every machine.
+    // The sign is free: that of the first among the strongest, equal ones of which may differ in
+    // last digits.
     Eigen::VectorXd axis = axes.eigenvectors().col(count - 1 - k);
-    Eigen::Index strongest = 0;
-    axis.cwiseAbs().maxCoeff(&strongest);
-    if (axis[strongest] < 0) axis = -axis;
+    constexpr double nearly = 1 - 1e-6;
+    const double strong = nearly * axis.cwiseAbs().maxCoeff();
+    const auto first = std::ranges::find_if(axis, [&](double x) { return std::abs(x) >= strong; });
+    if (*first < 0) axis = -axis;
     group.combinations.col(k) = axis / std::sqrt(spread(k));
     group.residuals -= spread(k) * axis.cwiseAbs2();
   }
-  group.residuals = group.residuals.cwiseMax(0.0);
+  for (double& residual : group.residuals) residual = in_steps(std::max(residual, 0.0), kErrorBits);
   return group;
 }
 

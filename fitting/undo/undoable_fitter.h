@@ -31,6 +31,7 @@ class UndoableFitter final : public Fitter {
   explicit UndoableFitter(Factory make, Replay replay = {});
 
   [[nodiscard]] bool needs_images() const override { return inner_->needs_images(); }
+  [[nodiscard]] bool needs_depth() const override { return inner_->needs_depth(); }
   const ModelUpdate& integrate(const core::Observation& observation) override;
   const ModelUpdate& finish() override { return inner_->finish(); }
   /// Another object after `undo`.

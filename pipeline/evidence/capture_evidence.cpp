@@ -34,6 +34,7 @@ CaptureEvidence::CaptureEvidence(const capture::Session& session, const core::Me
       middle_(core::bounds_of(mesh).center().cast<double>()),
       outline_(mesh),
       light_(patch_count),
+      depth_(session.depth ? session.depth->unit_m : 1),
       grains_(kMostGrains, kGrainSpacing) {
   if (board) corners_.emplace(*board, session.camera);
 }
@@ -46,6 +47,7 @@ void CaptureEvidence::look_at(const capture::Frame& frame,
                       last_index_ + 1 == frame.index ? last_pose_ : std::nullopt);
   }
   outline_.look_at(frame.index, frame.image, observation.camera, observation.camera_from_object);
+  depth_.look_at(observation);
   light_.look_at(frame.index, observation.samples, observation.view);
   if (grains_.is_due()) measure_grain(frame.image);
   const Eigen::Vector3d eye = observation.camera_from_object.inverse().translation() - middle_;
@@ -91,6 +93,7 @@ std::vector<Finding> CaptureEvidence::faults() const {
                                            "more light, or longer exposure and slower motion",
                                            noise)});
   }
+  if (auto unit = depth_.finding()) faults.push_back(std::move(*unit));
   if (corners_) append(corners_->findings(), faults);
   const bool has_wrong_poses = corners_ && !corners_->findings().empty();
   const LightEvidence::Verdict light = light_.verdict();

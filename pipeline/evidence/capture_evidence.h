@@ -5,6 +5,7 @@
 #include "core/mesh/mesh.h"
 #include "core/samples/observation.h"
 #include "pipeline/evidence/corner_evidence.h"
+#include "pipeline/evidence/depth_evidence.h"
 #include "pipeline/evidence/finding.h"
 #include "pipeline/evidence/light_evidence.h"
 #include "pipeline/evidence/outline_evidence.h"
@@ -18,9 +19,9 @@
 namespace sheen::pipeline {
 
 /// What a recording's own data show to be wrong with it, by the trace that each fault leaves:
-/// corners of tags, outlines, brightness, grain, and from where the object was seen. Looks at every
-/// fourth frame, and in long recordings at fewer. The result does not
-/// depend on what is fitted.
+/// corners of tags, outlines, brightness, depths, grain, and from where the object was seen. Looks
+/// at every fourth frame, and in long recordings at fewer. The result does not depend on what is
+/// fitted.
 class CaptureEvidence {
  public:
   /// `mesh` must outlive this; `patch_count` is that of the samples. `board` is that of the tags
@@ -50,6 +51,7 @@ class CaptureEvidence {
   std::optional<CornerEvidence> corners_;
   OutlineEvidence outline_;
   LightEvidence light_;
+  DepthEvidence depth_;
   Thinned<double> grains_;  ///< standard deviation of the noise, grey levels
   std::optional<Eigen::Isometry3d> last_pose_;
   int last_index_ = 0;

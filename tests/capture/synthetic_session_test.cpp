@@ -3,11 +3,13 @@
 
 #include "capture/pose/board.h"
 #include "capture/pose/trajectory.h"
+#include "capture/session/depth_images.h"
 #include "capture/session/session.h"
 #include "capture/synthetic/motion_jpeg_file.h"
 #include "capture/synthetic/torus_knot.h"
 #include "core/diagnostics/error.h"
 #include "core/mesh/read_mesh.h"
+#include "core/visibility/ray_caster.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -15,6 +17,8 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -105,6 +109,45 @@ TEST_F(SyntheticSession, BytesDependOnOptionsAloneAndNotOnThreads) {
   EXPECT_EQ(contents(folder_ / "one"), contents(folder_ / "two"));
   EXPECT_NE(contents(folder_ / "one").at("frames.avi"),
             contents(folder_ / "other").at("frames.avi"));
+}
+
+// Depth images against rays through the exact lens, not the interpolated one of the camera that
+// photographs: within half a step, but for pixels whose middle lies on an outline.
+TEST_F(SyntheticSession, DepthImagesSayHowFarEverythingIs) {
+  SyntheticOptions options = small();
+  options.depth = true;
+  write_synthetic_session(folder_ / "s", options, {});
+  const Session session = open_session(folder_ / "s");
+  const Trajectory truth = read_trajectory(folder_ / "s" / "truth_poses.txt");
+  const DepthImages images(session);
+  const double unit_m = session.depth.value().unit_m;
+  const core::Mesh mesh = core::read_mesh(session.mesh);
+  const core::RayCaster caster(mesh);
+  int wrong = 0;
+  for (int frame = 0; frame < options.frames; ++frame) {
+    const cv::Mat depth_m = images.read(frame);
+    const Eigen::Isometry3d& board_from_camera =
+        truth.entries()[static_cast<std::size_t>(frame)].board_from_camera;
+    const Eigen::Isometry3d object_from_camera =
+        session.board_from_object.inverse() * board_from_camera;
+    const Eigen::Vector3d eye = board_from_camera.translation();
+    for (int y = 0; y < depth_m.rows; ++y) {
+      for (int x = 0; x < depth_m.cols; ++x) {
+        // Of z 1, so that lengths along it are depths.
+        const Eigen::Vector3d ray = *session.camera.unproject({x, y});
+        const auto hit =
+            caster.first_hit(object_from_camera.translation().cast<float>(),
+                             (object_from_camera.linear() * ray).cast<float>(), 0, 100.0f);
+        const double board_m = -eye.z() / (board_from_camera.linear() * ray).z();
+        const double expected = hit ? static_cast<double>(hit->distance) : board_m;
+        if (std::abs(static_cast<double>(depth_m.at<float>(y, x)) - expected) > unit_m / 2 + 1e-5) {
+          ++wrong;
+        }
+      }
+    }
+  }
+  std::printf("%d pixels\n", wrong);
+  EXPECT_LT(wrong, options.frames * options.width_px * options.height_px / 1000);
 }
 
 TEST_F(SyntheticSession, InterruptedWorkLeavesWhatWasThere) {

@@ -153,6 +153,73 @@ TEST(DepthQuads, MedianRemovesFliersNotDepths) {
   EXPECT_EQ(at_middle(pole, 3), 1.5f);
 }
 
+/// The quads of a knot from one side, fitted with this depth image.
+QuadDepths quads_with(const Photographs& photographs, const cv::Mat& depth_m) {
+  const auto fitter =
+      make_fitter("depth-quads", photographs.mesh(), {{"spacing", "1"}, {"median", "3"}});
+  photographs.observe({0}, [&](const core::Observation& observation) {
+    core::Observation measured = observation;
+    measured.depth_m = depth_m;
+    fitter->integrate(measured);
+  });
+  return dynamic_cast<const DepthQuads&>(fitter->light_field()).quads(0).depths;
+}
+
+// Depths of the z-buffer, rounded to millimetres as a file has them, are within half of one; a
+// median of rounded numbers is the rounded median; the nearest and farthest, from which codes are
+// counted, are rounded, too. Each code is off by half a step at most.
+TEST(DepthQuads, MeasuredDepthsAreTheMeshesWithinTheirSteps) {
+  const auto photographs = knot_from({0});
+  core::DepthImage buffer(photographs.mesh(), 1);
+  cv::Mat depth_m(photographs.camera().height_px(), photographs.camera().width_px(), CV_32FC1,
+                  cv::Scalar(0));
+  photographs.observe({0}, [&](const core::Observation& observation) {
+    buffer.draw(observation.view, depth_m.size(), observation.camera_from_object);
+    buffer.depth_m().copyTo(depth_m(buffer.box()));
+  });
+  const QuadDepths exact = quads_with(photographs, {});
+  cv::Mat rounded = depth_m.clone();
+  constexpr float unit_m = 0.001f;
+  for (float& depth : cv::Mat_<float>(rounded)) depth = unit_m * std::round(depth / unit_m);
+  const QuadDepths measured = quads_with(photographs, rounded);
+  ASSERT_EQ(exact.codes.size(), measured.codes.size());
+  const float step_m =
+      std::max(exact.farthest_m - exact.nearest_m, measured.farthest_m - measured.nearest_m) /
+      65534;
+  std::size_t quads = 0;
+  for (std::size_t i = 0; i < exact.codes.size(); ++i) {
+    ASSERT_EQ(exact.codes[i] == 0, measured.codes[i] == 0);
+    if (exact.codes[i] == 0) continue;
+    ++quads;
+    ASSERT_NEAR(exact.depth_m(exact.codes[i]), measured.depth_m(measured.codes[i]),
+                unit_m / 2 + step_m + 1e-6f);
+  }
+  EXPECT_GT(quads, 1000u);
+}
+
+// Where nothing was measured there is no quad; nor where something in front of the object was, or
+// behind it; and none beside the object.
+TEST(DepthQuads, MeasuredDepthsMayHaveHoles) {
+  const auto photographs = knot_from({0});
+  const QuadDepths all = quads_with(photographs, {});
+  const auto count = [&](const cv::Mat& depth_m) {
+    const QuadDepths depths = quads_with(photographs, depth_m);
+    return std::ranges::count_if(depths.codes, [](auto code) { return code != 0; });
+  };
+  const cv::Size size(photographs.camera().width_px(), photographs.camera().height_px());
+  const float middle_m = 0.5f * (all.nearest_m + all.farthest_m);
+  cv::Mat flat(size, CV_32FC1, cv::Scalar(middle_m));
+  const auto whole = std::ranges::count_if(all.codes, [](auto code) { return code != 0; });
+  EXPECT_EQ(count(flat), whole);
+  flat.colRange(0, size.width / 2).setTo(0);
+  const auto half = count(flat);
+  EXPECT_GT(half, whole / 4);
+  EXPECT_LT(half, 3 * whole / 4);
+  flat.colRange(0, size.width / 4).setTo(0.1f * middle_m);
+  flat.colRange(size.width / 4, size.width / 2).setTo(10 * middle_m);
+  EXPECT_EQ(count(flat), half);
+}
+
 // At spacing 1 every pixel is a quad at its own depth: back in its own camera it covers that pixel,
 // and only rounding and the JPEG are left.
 TEST(DepthQuads, PhotographsAreTheirOwnViews) {

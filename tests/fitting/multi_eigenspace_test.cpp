@@ -10,6 +10,7 @@
 #include "fitting/multi_eigenspace/select_groups.h"
 #include "fitting/multi_eigenspace/view_graph.h"
 #include "render/multi_eigenspace/eigenspace_renderer.h"
+#include "tests/fitting/eigenspace_groups.h"
 #include "tests/fitting/photographs_for_tests.h"
 
 #include <gtest/gtest.h>
@@ -97,7 +98,7 @@ std::vector<cv::Mat> random_pictures(int count, int side_px) {
 }
 
 cv::Mat everywhere(int side_px) {
-  return {side_px, side_px, CV_32FC1, cv::Scalar(1)};
+  return {side_px, side_px, CV_8UC1, cv::Scalar(255)};
 }
 
 /// Mean squared over pixels and channels.
@@ -151,6 +152,38 @@ TEST(ViewGroup, EqualPicturesHaveNoAxis) {
   const ViewGroup group = principal_axes(gram, {0, 1, 2, 3}, 3, 0);
   EXPECT_EQ(group.dimensions(), 0);
   EXPECT_TRUE(group.residuals.isZero(1e-9));
+}
+
+// Against whole numbers of 64 bits: sums in doubles are exact, so nothing is left but the rounding
+// to steps of 2^-26.
+TEST(Gram, IsExact) {
+  const auto pictures = random_pictures(5, 40);
+  cv::Mat weights(40, 40, CV_8UC1);
+  cv::RNG(3).fill(weights, cv::RNG::UNIFORM, 0, 256);
+  const Gram gram = gram_of(pictures, weights);
+  Eigen::Matrix<std::int64_t, 5, 5> sums = Eigen::Matrix<std::int64_t, 5, 5>::Zero();
+  std::int64_t all = 0;
+  for (int p = 0; p < 1600; ++p) {
+    const std::int64_t weight = weights.ptr()[p];
+    all += 4 * weight;
+    for (int c = 0; c < 4; ++c) {
+      for (std::size_t i = 0; i < 5; ++i) {
+        for (std::size_t j = 0; j < 5; ++j) {
+          sums(static_cast<int>(i), static_cast<int>(j)) +=
+              weight * pictures[i].ptr()[4 * p + c] * pictures[j].ptr()[4 * p + c];
+        }
+      }
+    }
+  }
+  // Of the centred pictures: 25 times it is a whole number.
+  for (int i = 0; i < 5; ++i) {
+    for (int j = 0; j < 5; ++j) {
+      const std::int64_t centred =
+          25 * sums(i, j) - 5 * sums.row(i).sum() - 5 * sums.row(j).sum() + sums.sum();
+      const double expected = static_cast<double>(centred) / 25 / static_cast<double>(all);
+      EXPECT_NEAR(gram(i, j), expected, std::ldexp(1.0, -26));
+    }
+  }
 }
 
 // ---- selection ----
@@ -385,6 +418,37 @@ TEST(MultiEigenspace, BeatsOneEigenspaceAtEqualWork) {
   note("rms_of_one_at_equal_work", one);
   note("rms_of_one_at_equal_storage", as_large);
   EXPECT_LT(several, 0.6 * one);
+}
+
+// ---- last digits ----
+
+// Other instructions, other last digits: the same groups to the last byte.
+TEST(MultiEigenspace, GroupsDoNotHangOnTheProcessor) {
+  const auto bytes = testing::packed_bytes();
+  const auto otherwise = testing::packed_bytes_otherwise();
+  EXPECT_GT(bytes.size(), 48u * 4 + 3 * 6400);  // several spaces
+  EXPECT_EQ(bytes, otherwise);
+}
+
+// Inner products altered by a millionth of a millionth.
+TEST(MultiEigenspace, GroupsDoNotHangOnLastDigits) {
+  const std::vector<cv::Mat>& pictures = turntable_pictures();
+  const Gram gram = gram_of(pictures, pixel_weights(pictures));
+  const ViewGraph graph(fitted_turntable().directions());
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-1e-12, 1e-12);
+  for (const double tolerance : {6.0, 10.0, 16.0}) {
+    const Partition expected = partition_views(gram, graph, {3, tolerance}, 1);
+    Gram altered = gram;
+    for (Eigen::Index i = 0; i < gram.rows(); ++i) {
+      for (Eigen::Index j = 0; j <= i; ++j) {
+        altered(i, j) = altered(j, i) = gram(i, j) * (1 + uniform(random));
+      }
+    }
+    const Partition found = partition_views(altered, graph, {3, tolerance}, 1);
+    EXPECT_EQ(found.owners, expected.owners) << tolerance;
+    EXPECT_EQ(found.grown, expected.grown);
+  }
 }
 
 // ---- input at the edges ----
