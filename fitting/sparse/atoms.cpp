@@ -105,10 +105,54 @@ class Neighbourhoods {
   std::vector<std::size_t> first_;
 };
 
+// Sets for the cells of a grid twice as fine as the finest level's.
+class FeltAtoms {
+ public:
+  FeltAtoms() {
+    for (int cell = 0; cell < kSide * kSide; ++cell) {
+      const Eigen::Vector2f center =
+          kCell * Eigen::Vector2f(static_cast<float>(cell % kSide) + 0.5f,
+                                  static_cast<float>(cell / kSide) + 0.5f) -
+          Eigen::Vector2f::Ones();
+      set_[static_cast<std::size_t>(cell)] = felt_in(center);
+    }
+  }
+  [[nodiscard]] const AtomSet& at(const Eigen::Vector2f& uv) const {
+    const auto along = [](float x) {
+      return std::clamp(static_cast<int>((x + 1.0f) / kCell), 0, kSide - 1);
+    };
+    return set_[static_cast<std::size_t>(along(uv.y()) * kSide + along(uv.x()))];
+  }
+
+ private:
+  static constexpr int kSide = 2 * kLevels.back().side;
+  static constexpr float kCell = 2.0f / kSide;
+
+  // Of a cell about `center`: by its nearest point.
+  static AtomSet felt_in(const Eigen::Vector2f& center) {
+    constexpr float reach = 0.78f;  // supports; Wendland's function is .0097 there
+    AtomSet felt{};
+    for (std::size_t idx = 0; idx < atoms().size(); ++idx) {
+      const Atom& atom = atoms()[idx];
+      const Eigen::Vector2f nearest =
+          ((atom.center - center).cwiseAbs() - Eigen::Vector2f::Constant(kCell / 2)).cwiseMax(0.0f);
+      if (nearest.norm() < reach * atom.support) felt[idx / 64] |= std::uint64_t{1} << idx % 64;
+    }
+    return felt;
+  }
+
+  std::array<AtomSet, std::size_t{kSide} * kSide> set_;
+};
+
 }  // namespace
 
 std::span<const std::uint16_t> atoms_round(const Eigen::Vector2f& uv) {
   static const Neighbourhoods all;
+  return all.at(uv);
+}
+
+const AtomSet& atoms_felt_at(const Eigen::Vector2f& uv) {
+  static const FeltAtoms all;
   return all.at(uv);
 }
 
