@@ -44,25 +44,55 @@ std::vector<Atom> make_atoms() {
 
 // By a grid over the square: with 256 steps the means are good to four digits, more than a vertex
 // colour shows.
-std::vector<float> make_means() {
-  constexpr int steps = 256;
-  const std::span<const Atom> all = atoms();
-  std::vector<double> sums(all.size(), 0.0);
+constexpr int kSteps = 256;
+
+Eigen::Vector2f grid_point(int x, int y) {
+  return {2.0f * (static_cast<float>(x) + 0.5f) / kSteps - 1.0f,
+          2.0f * (static_cast<float>(y) + 0.5f) / kSteps - 1.0f};
+}
+
+double points_on_disc() {
   double points = 0;
-  for (int y = 0; y < steps; ++y) {
-    for (int x = 0; x < steps; ++x) {
-      const Eigen::Vector2f uv(2.0f * (static_cast<float>(x) + 0.5f) / steps - 1.0f,
-                               2.0f * (static_cast<float>(y) + 0.5f) / steps - 1.0f);
+  for (int y = 0; y < kSteps; ++y) {
+    for (int x = 0; x < kSteps; ++x) points += grid_point(x, y).squaredNorm() > 1.0f ? 0 : 1;
+  }
+  return points;
+}
+
+double sum_over_disc(const Atom& atom) {
+  const auto step_at = [](float place) {
+    return std::clamp(static_cast<int>((place + 1.0f) * (kSteps / 2.0f)), 0, kSteps - 1);
+  };
+  double sum = 0;
+  for (int y = step_at(atom.center.y() - atom.support);
+       y <= step_at(atom.center.y() + atom.support); ++y) {
+    for (int x = step_at(atom.center.x() - atom.support);
+         x <= step_at(atom.center.x() + atom.support); ++x) {
+      const Eigen::Vector2f uv = grid_point(x, y);
       if (uv.squaredNorm() > 1.0f) continue;
-      points += 1;
-      for (std::size_t i = 0; i < sums.size(); ++i) {
-        const Atom& atom = all[i];
-        sums[i] += static_cast<double>(iwls::wendland((uv - atom.center).norm() / atom.support));
-      }
+      sum += static_cast<double>(iwls::wendland((uv - atom.center).norm() / atom.support));
     }
   }
+  return sum;
+}
+
+/// Whether one is the other mirrored.
+bool are_mirrored(const Atom& a, const Atom& b) {
+  const Eigen::Vector2f at = a.center.cwiseAbs();
+  const Eigen::Vector2f other = b.center.cwiseAbs();
+  return a.support == b.support && (at == other || at == other.reverse());
+}
+
+// Eight atoms, mirrored, have one mean.
+std::vector<float> make_means() {
+  const std::span<const Atom> all = atoms();
+  const double points = points_on_disc();
   std::vector<float> means;
-  for (const double sum : sums) means.push_back(static_cast<float>(sum / points));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::size_t first = 0;
+    while (first < i && !are_mirrored(all[first], all[i])) ++first;
+    means.push_back(first < i ? means[first] : static_cast<float>(sum_over_disc(all[i]) / points));
+  }
   return means;
 }
 

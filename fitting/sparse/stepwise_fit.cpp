@@ -126,8 +126,11 @@ void Design::load(std::span<const DirectedColour> samples) {
   }
   has_lines_ = false;
   evaluated_.reset();
-  for (FunctionIdx idx = 0; idx < kLinearBase; ++idx) evaluated_.set(idx);
-  set_ridge();
+  total_weight_ = columns::dot(root_weight_, root_weight_, padded_rows());
+  for (FunctionIdx idx = 0; idx < kLinearBase; ++idx) {
+    evaluated_.set(idx);
+    set_ridge(idx);
+  }
 }
 
 void Design::evaluate(FunctionIdx idx) {
