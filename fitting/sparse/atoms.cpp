@@ -44,25 +44,55 @@ std::vector<Atom> make_atoms() {
 
 // By a grid over the square: with 256 steps the means are good to four digits, more than a vertex
 // colour shows.
-std::vector<float> make_means() {
-  constexpr int steps = 256;
-  const std::span<const Atom> all = atoms();
-  std::vector<double> sums(all.size(), 0.0);
+constexpr int kSteps = 256;
+
+Eigen::Vector2f grid_point(int x, int y) {
+  return {2.0f * (static_cast<float>(x) + 0.5f) / kSteps - 1.0f,
+          2.0f * (static_cast<float>(y) + 0.5f) / kSteps - 1.0f};
+}
+
+double points_on_disc() {
   double points = 0;
-  for (int y = 0; y < steps; ++y) {
-    for (int x = 0; x < steps; ++x) {
-      const Eigen::Vector2f uv(2.0f * (static_cast<float>(x) + 0.5f) / steps - 1.0f,
-                               2.0f * (static_cast<float>(y) + 0.5f) / steps - 1.0f);
+  for (int y = 0; y < kSteps; ++y) {
+    for (int x = 0; x < kSteps; ++x) points += grid_point(x, y).squaredNorm() > 1.0f ? 0 : 1;
+  }
+  return points;
+}
+
+double sum_over_disc(const Atom& atom) {
+  const auto step_at = [](float place) {
+    return std::clamp(static_cast<int>((place + 1.0f) * (kSteps / 2.0f)), 0, kSteps - 1);
+  };
+  double sum = 0;
+  for (int y = step_at(atom.center.y() - atom.support);
+       y <= step_at(atom.center.y() + atom.support); ++y) {
+    for (int x = step_at(atom.center.x() - atom.support);
+         x <= step_at(atom.center.x() + atom.support); ++x) {
+      const Eigen::Vector2f uv = grid_point(x, y);
       if (uv.squaredNorm() > 1.0f) continue;
-      points += 1;
-      for (std::size_t i = 0; i < sums.size(); ++i) {
-        const Atom& atom = all[i];
-        sums[i] += static_cast<double>(iwls::wendland((uv - atom.center).norm() / atom.support));
-      }
+      sum += static_cast<double>(iwls::wendland((uv - atom.center).norm() / atom.support));
     }
   }
+  return sum;
+}
+
+/// Whether one is the other mirrored.
+bool are_mirrored(const Atom& a, const Atom& b) {
+  const Eigen::Vector2f at = a.center.cwiseAbs();
+  const Eigen::Vector2f other = b.center.cwiseAbs();
+  return a.support == b.support && (at == other || at == other.reverse());
+}
+
+// Eight atoms, mirrored, have one mean.
+std::vector<float> make_means() {
+  const std::span<const Atom> all = atoms();
+  const double points = points_on_disc();
   std::vector<float> means;
-  for (const double sum : sums) means.push_back(static_cast<float>(sum / points));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::size_t first = 0;
+    while (first < i && !are_mirrored(all[first], all[i])) ++first;
+    means.push_back(first < i ? means[first] : static_cast<float>(sum_over_disc(all[i]) / points));
+  }
   return means;
 }
 
@@ -105,10 +135,54 @@ class Neighbourhoods {
   std::vector<std::size_t> first_;
 };
 
+// Sets for the cells of a grid twice as fine as the finest level's.
+class FeltAtoms {
+ public:
+  FeltAtoms() {
+    for (int cell = 0; cell < kSide * kSide; ++cell) {
+      const Eigen::Vector2f center =
+          kCell * Eigen::Vector2f(static_cast<float>(cell % kSide) + 0.5f,
+                                  static_cast<float>(cell / kSide) + 0.5f) -
+          Eigen::Vector2f::Ones();
+      set_[static_cast<std::size_t>(cell)] = felt_in(center);
+    }
+  }
+  [[nodiscard]] const AtomSet& at(const Eigen::Vector2f& uv) const {
+    const auto along = [](float x) {
+      return std::clamp(static_cast<int>((x + 1.0f) / kCell), 0, kSide - 1);
+    };
+    return set_[static_cast<std::size_t>(along(uv.y()) * kSide + along(uv.x()))];
+  }
+
+ private:
+  static constexpr int kSide = 2 * kLevels.back().side;
+  static constexpr float kCell = 2.0f / kSide;
+
+  // Of a cell about `center`: by its nearest point.
+  static AtomSet felt_in(const Eigen::Vector2f& center) {
+    constexpr float reach = 0.78f;  // supports; Wendland's function is .0097 there
+    AtomSet felt{};
+    for (std::size_t idx = 0; idx < atoms().size(); ++idx) {
+      const Atom& atom = atoms()[idx];
+      const Eigen::Vector2f nearest =
+          ((atom.center - center).cwiseAbs() - Eigen::Vector2f::Constant(kCell / 2)).cwiseMax(0.0f);
+      if (nearest.norm() < reach * atom.support) felt[idx / 64] |= std::uint64_t{1} << idx % 64;
+    }
+    return felt;
+  }
+
+  std::array<AtomSet, std::size_t{kSide} * kSide> set_;
+};
+
 }  // namespace
 
 std::span<const std::uint16_t> atoms_round(const Eigen::Vector2f& uv) {
   static const Neighbourhoods all;
+  return all.at(uv);
+}
+
+const AtomSet& atoms_felt_at(const Eigen::Vector2f& uv) {
+  static const FeltAtoms all;
   return all.at(uv);
 }
 

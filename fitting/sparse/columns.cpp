@@ -48,10 +48,12 @@ SHEEN_INLINE void wendland_of_squared(std::size_t rows, Column& out) {
   }
 }
 
-SHEEN_INLINE float sum(const Column& column, std::size_t rows) {
-  Group sums{};
-  for (std::size_t row = 0; row < rows; row += kRowGroup) sums += group(column, row);
-  return total(sums);
+SHEEN_INLINE Group wendland_of_squared(Group squared) {
+  Group distance;
+  for (std::size_t k = 0; k < kRowGroup; ++k) distance[k] = __builtin_sqrtf(squared[k]);
+  const Group rest = 1.0f - distance;
+  const Group rest2 = rest * rest;
+  return rest2 * rest2 * (4.0f * distance + 1.0f);
 }
 
 }  // namespace
@@ -79,17 +81,32 @@ float wendland_sum(const Column& u, const Column& v, const Column& weight, std::
 
 SHEEN_FOR_EVERY_PROCESSOR
 void kernel_density(const Column& u, const Column& v, std::size_t rows, float reach, Column& out) {
-  Column near;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
-  const auto all = static_cast<float>(rows);
+  // Every pair once: a sample with those of its own group, and with the groups behind, which get
+  // their part at the same time.
+  const float per_squared_reach = 1.0f / (reach * reach);
+  for (std::size_t row = 0; row < rows; row += kRowGroup) group(out, row) = Group{};
   for (std::size_t i = 0; i < rows; ++i) {
-    relative_distances(u, v, rows, u.row[i], v.row[i], reach, near);
-    // Most samples stand alone: only their own distance is below 1.
-    if (sum(near, rows) >= all - 1.0f) {
-      out.row[i] = 1.0f;
-      continue;
+    const std::size_t own = i / kRowGroup * kRowGroup;
+    Group sums{};
+    for (std::size_t row = own; row < rows; row += kRowGroup) {
+      const Group du = group(u, row) - u.row[i];
+      const Group dv = group(v, row) - v.row[i];
+      const Group squared = per_squared_reach * (du * du + dv * dv);
+      const Group theta = wendland_of_squared(squared < 1.0f ? squared : Group{} + 1.0f);
+      sums += theta;
+      if (row > own) group(out, row) += theta;
     }
-    wendland_of_squared(rows, near);
-    out.row[i] = sum(near, rows);
+    out.row[i] += total(sums);
+  }
+}
+
+SHEEN_FOR_EVERY_PROCESSOR
+void squared_distances(const std::int16_t* u, const std::int16_t* v, float at_u, float at_v,
+                       float scale, float* out) {
+  for (std::size_t i = 0; i < kPlaceBlock; ++i) {
+    const float du = static_cast<float>(u[i]) - at_u;
+    const float dv = static_cast<float>(v[i]) - at_v;
+    out[i] = (du * du + dv * dv) * scale;
   }
 }
 
@@ -178,9 +195,8 @@ std::size_t best_gain(const float* r, const float* g, const float* b, const floa
 
 namespace {
 
-constexpr std::size_t kGroupsAtOnce = 8;
-constexpr std::size_t kAtomsAtOnce = kGroupsAtOnce * kRowGroup;
-static_assert(kAtomPlaces % kAtomsAtOnce == 0 && alignof(AtomLine) % sizeof(Group) == 0);
+constexpr std::size_t kGroupsAtOnce = kAtomGroup / kRowGroup;
+static_assert(alignof(AtomLine) % sizeof(Group) == 0);
 
 SHEEN_INLINE const Group& group(const AtomLine& line, std::size_t atom) {
   return *reinterpret_cast<const Group*>(line.atom + atom);
@@ -193,11 +209,11 @@ SHEEN_INLINE Group& group(AtomLine& line, std::size_t atom) {
 }  // namespace
 
 SHEEN_FOR_EVERY_PROCESSOR
-void atom_lines(const Column& u, const Column& v, std::size_t rows, const AtomPlaces& places,
-                AtomLine* line) {
-  for (std::size_t row = 0; row < rows; ++row) {
+void atom_lines(const Column& u, const Column& v, std::size_t samples, const AtomPlaces& places,
+                std::size_t atoms, AtomLine* line) {
+  for (std::size_t row = 0; row < samples; ++row) {
     float* out = line[row].atom;
-    for (std::size_t atom = 0; atom < kAtomPlaces; ++atom) {
+    for (std::size_t atom = 0; atom < atoms; ++atom) {
       const float du = u.row[row] - places.center_u.atom[atom];
       const float dv = v.row[row] - places.center_v.atom[atom];
       const float squared = places.per_squared_support.atom[atom] * (du * du + dv * dv);
@@ -210,11 +226,12 @@ void atom_lines(const Column& u, const Column& v, std::size_t rows, const AtomPl
 }
 
 SHEEN_FOR_EVERY_PROCESSOR
-void atom_sums(const AtomLine* line, std::size_t rows, const Column* factor, AtomLine* sum) {
+void atom_sums(const AtomLine* line, std::size_t samples, std::size_t atoms, const Column* factor,
+               AtomLine* sum) {
   constexpr std::size_t groups = 4;  // times three sums: as many as there are registers
-  for (std::size_t atom = 0; atom < kAtomPlaces; atom += groups * kRowGroup) {
+  for (std::size_t atom = 0; atom < atoms; atom += groups * kRowGroup) {
     Group r[groups]{}, g[groups]{}, b[groups]{};
-    for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t row = 0; row < samples; ++row) {
       for (std::size_t k = 0; k < groups; ++k) {
         const Group value = group(line[row], atom + k * kRowGroup);
         r[k] += value * factor[0].row[row];
@@ -231,12 +248,12 @@ void atom_sums(const AtomLine* line, std::size_t rows, const Column* factor, Ato
 }
 
 SHEEN_FOR_EVERY_PROCESSOR
-void atom_squares(const AtomLine* line, std::size_t rows, const Column& squared_weight,
-                  AtomLine& covered, AtomLine& squared) {
+void atom_squares(const AtomLine* line, std::size_t samples, std::size_t atoms,
+                  const Column& squared_weight, AtomLine& covered, AtomLine& squared) {
   constexpr std::size_t groups = 4;
-  for (std::size_t atom = 0; atom < kAtomPlaces; atom += groups * kRowGroup) {
+  for (std::size_t atom = 0; atom < atoms; atom += groups * kRowGroup) {
     Group first[groups]{}, second[groups]{};
-    for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t row = 0; row < samples; ++row) {
       for (std::size_t k = 0; k < groups; ++k) {
         const Group value = group(line[row], atom + k * kRowGroup);
         const Group weighted = value * squared_weight.row[row];
@@ -252,20 +269,24 @@ void atom_squares(const AtomLine* line, std::size_t rows, const Column& squared_
 }
 
 SHEEN_FOR_EVERY_PROCESSOR
-void take_away(const AtomLine* line, std::size_t rows, const Column& factor, const float* along,
-               AtomLine& remainder, AtomLine* correlation) {
-  for (std::size_t atom = 0; atom < kAtomPlaces; atom += kAtomsAtOnce) {
-    Group shared[kGroupsAtOnce]{};
-    for (std::size_t row = 0; row < rows; ++row) {
-      const float by = factor.row[row];
-      for (std::size_t k = 0; k < kGroupsAtOnce; ++k) {
-        shared[k] += group(line[row], atom + k * kRowGroup) * by;
+void take_away(const AtomLine* line, std::size_t samples, std::size_t atoms, const Column* factor,
+               const float* along, std::size_t count, AtomLine& remainder, AtomLine* correlation) {
+  for (std::size_t atom = 0; atom < atoms; atom += kAtomGroup) {
+    for (std::size_t j = 0; j < count; ++j) {
+      Group shared[kGroupsAtOnce]{};
+      for (std::size_t row = 0; row < samples; ++row) {
+        const float by = factor[j].row[row];
+        for (std::size_t k = 0; k < kGroupsAtOnce; ++k) {
+          shared[k] += group(line[row], atom + k * kRowGroup) * by;
+        }
       }
-    }
-    for (std::size_t k = 0; k < kGroupsAtOnce; ++k) {
-      const std::size_t at = atom + k * kRowGroup;
-      group(remainder, at) -= shared[k] * shared[k];
-      for (std::size_t c = 0; c < 3; ++c) group(correlation[c], at) -= along[c] * shared[k];
+      for (std::size_t k = 0; k < kGroupsAtOnce; ++k) {
+        const std::size_t at = atom + k * kRowGroup;
+        group(remainder, at) -= shared[k] * shared[k];
+        for (std::size_t c = 0; c < 3; ++c) {
+          group(correlation[c], at) -= along[3 * j + c] * shared[k];
+        }
+      }
     }
   }
 }

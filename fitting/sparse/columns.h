@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace sheen::fitting::sparse {
 
@@ -21,19 +22,21 @@ constexpr std::size_t padded(std::size_t rows) {
   return (rows + kRowGroup - 1) / kRowGroup * kRowGroup;
 }
 
-/// Atoms at one sample; places behind the last atom stay zero.
+/// Room for atoms at one sample; they are worked on in groups of kAtomGroup.
 inline constexpr std::size_t kAtomPlaces = 320;
+inline constexpr std::size_t kAtomGroup = 64;
+static_assert(kAtomPlaces % kAtomGroup == 0);
 struct alignas(64) AtomLine {
   float atom[kAtomPlaces];
 };
 
-/// Atoms' centres and 1 / support^2; where there is no atom, a centre far outside the disc.
+/// Atoms' centres and 1 / support^2; up to a whole group, centres far outside the disc.
 struct AtomPlaces {
   AtomLine center_u, center_v, per_squared_support;
 };
 
 /// The inner loops of sparse fits. Compiled for AVX2 too where the processor has it, with the same
-/// results to the bit; `rows` is a multiple of kRowGroup.
+/// results to the bit; `rows` is a multiple of kRowGroup, `atoms` of kAtomGroup.
 namespace columns {
 
 /// out = weight * theta(|(u, v) - (center_u, center_v)| / support), theta Wendland's function.
@@ -47,6 +50,12 @@ float wendland_sum(const Column& u, const Column& v, const Column& weight, std::
 /// out[i] = sum_j theta(|x_i - x_j| / reach). Rows behind the last sample must lie further than
 /// `reach` from all samples.
 void kernel_density(const Column& u, const Column& v, std::size_t rows, float reach, Column& out);
+
+/// Places whose distances are measured at a time.
+inline constexpr std::size_t kPlaceBlock = 16;
+/// out[i] = scale * ((u_i - at_u)^2 + (v_i - at_v)^2), i < kPlaceBlock.
+void squared_distances(const std::int16_t* u, const std::int16_t* v, float at_u, float at_v,
+                       float scale, float* out);
 
 float dot(const Column& a, const Column& b, std::size_t rows);
 
@@ -69,22 +78,24 @@ void squared_lengths(const Column* columns, std::size_t count, std::size_t rows,
 std::size_t best_gain(const float* r, const float* g, const float* b, const float* remainder,
                       std::size_t count, float least);
 
-/// line[i].atom[k] = theta(|(u_i, v_i) - center_k| / support_k) for the first `rows` samples.
-void atom_lines(const Column& u, const Column& v, std::size_t rows, const AtomPlaces& places,
-                AtomLine* line);
+/// line[i].atom[k] = theta(|(u_i, v_i) - center_k| / support_k), k < atoms, for the first
+/// `samples`.
+void atom_lines(const Column& u, const Column& v, std::size_t samples, const AtomPlaces& places,
+                std::size_t atoms, AtomLine* line);
 
-/// sum[c].atom[k] = sum_i factor[c].row[i] * line[i].atom[k] for the first `rows` samples, c < 3.
-void atom_sums(const AtomLine* line, std::size_t rows, const Column* factor, AtomLine* sum);
+/// sum[c].atom[k] = sum_i factor[c].row[i] * line[i].atom[k] for the first `samples`, c < 3.
+void atom_sums(const AtomLine* line, std::size_t samples, std::size_t atoms, const Column* factor,
+               AtomLine* sum);
 
 /// covered.atom[k] = sum_i w_i * line[i].atom[k], squared.atom[k] = sum_i w_i * line[i].atom[k]^2,
-/// w the squared weights of the first `rows` samples.
-void atom_squares(const AtomLine* line, std::size_t rows, const Column& squared_weight,
-                  AtomLine& covered, AtomLine& squared);
+/// w the squared weights of the first `samples`.
+void atom_squares(const AtomLine* line, std::size_t samples, std::size_t atoms,
+                  const Column& squared_weight, AtomLine& covered, AtomLine& squared);
 
-/// With s_k = sum_i factor.row[i] * line[i].atom[k]: remainder_k -= s_k^2 and
-/// correlation[c]_k -= along[c] * s_k, c < 3.
-void take_away(const AtomLine* line, std::size_t rows, const Column& factor, const float* along,
-               AtomLine& remainder, AtomLine* correlation);
+/// With s_k = sum_i factor[j].row[i] * line[i].atom[k]: remainder_k -= s_k^2 and
+/// correlation[c]_k -= along[3 j + c] * s_k, c < 3, for j = 0, ... count - 1.
+void take_away(const AtomLine* line, std::size_t samples, std::size_t atoms, const Column* factor,
+               const float* along, std::size_t count, AtomLine& remainder, AtomLine* correlation);
 
 }  // namespace columns
 }  // namespace sheen::fitting::sparse

@@ -30,6 +30,13 @@ std::span<const Atom> atoms();
 /// Ids of the atoms round a direction: of each level the cell that holds it and the eight about it.
 std::span<const std::uint16_t> atoms_round(const Eigen::Vector2f& uv);
 
+/// A set of atoms, a bit for each.
+using AtomSet = std::array<std::uint64_t, (kMaxAtoms + 63) / 64>;
+
+/// Atoms that a sample towards `uv` tells something of: all whose RBF is more than 1 % of its
+/// height there, and a few more.
+const AtomSet& atoms_felt_at(const Eigen::Vector2f& uv);
+
 /// Mean of every atom's RBF over the unit disc, as if its colour were 1 (by area of the disc).
 std::span<const float> atom_means();
 

@@ -134,12 +134,10 @@ std::size_t SampleStore::distances(const Eigen::Vector2f& uv, const SamplePool& 
   float smallest = std::numeric_limits<float>::infinity();
   for (std::size_t first = 0; first < size_; first += SampleBlock::kSamples) {
     const SampleBlock& block = block_of(first, pool);
+    static_assert(SampleBlock::kSamples == columns::kPlaceBlock);
     std::array<float, SampleBlock::kSamples> here;
-    for (std::size_t i = 0; i < SampleBlock::kSamples; ++i) {
-      const float du = static_cast<float>(block.u[i]) - u;
-      const float dv = static_cast<float>(block.v[i]) - v;
-      here[i] = (du * du + dv * dv) * (1.0f / (kScale * kScale));
-    }
+    columns::squared_distances(block.u.data(), block.v.data(), u, v, 1.0f / (kScale * kScale),
+                               here.data());
     // Keep the nearest, the first of equals.
     const std::size_t end = std::min(SampleBlock::kSamples, size_ - first);
     for (std::size_t i = 0; i < end; ++i) {

@@ -38,65 +38,89 @@ void Selection::list_candidates() {
   AtomLine ridge;
   design_.measure_atoms(squared, ridge);
   design_.atom_products(&design_.colours(0), all_candidates_.correlation.data());
-  for (std::size_t atom = 0; atom < kAtomPlaces; ++atom) {
+  for (std::size_t atom = 0; atom < design_.atom_count(); ++atom) {
     all_candidates_.remainder.atom[atom] =
         squared.atom[atom] < hardly_touched ? 0.0f : squared.atom[atom] + ridge.atom[atom];
   }
 }
 
-void Selection::follow(Candidates& candidates) const {
-  design_.take_away(fit_.last_direction(), fit_.last_projection(), candidates.remainder,
-                    candidates.correlation.data());
+void Selection::follow(Candidates& candidates, std::size_t new_terms) const {
+  design_.take_away(fit_.last_directions(new_terms), fit_.last_projections(new_terms),
+                    candidates.remainder, candidates.correlation.data());
+}
+
+void Selection::take_out(Candidates& candidates, FunctionIdx idx) const {
+  if (const auto place = design_.place_of(idx)) candidates.remainder.atom[*place] = 0.0f;
 }
 
 // Takes out the best; nothing when none is left that differs from what is there.
-std::optional<FunctionIdx> Selection::take_best(Candidates& candidates) {
+std::optional<Selection::Candidate> Selection::take_best(Candidates& candidates) const {
   constexpr float smallest_remainder = 1e-4f;
   const auto& [r, g, b] = candidates.correlation;
+  const std::size_t count = design_.atom_count();
   const std::size_t atom = columns::best_gain(r.atom, g.atom, b.atom, candidates.remainder.atom,
-                                              kMaxAtoms, smallest_remainder);
-  if (atom == kMaxAtoms) return std::nullopt;
-  candidates.remainder.atom[atom] = 0.0f;
-  return kLinearBase + atom;
+                                              count, smallest_remainder);
+  if (atom == count) return std::nullopt;
+  const Eigen::Vector3f correlation(r.atom[atom], g.atom[atom], b.atom[atom]);
+  const float remainder = std::exchange(candidates.remainder.atom[atom], 0.0f);
+  return Candidate{design_.atom_at(atom), correlation.squaredNorm() / remainder};
 }
 
-float Selection::generalised_error(const StepwiseFit& fit) const {
+float Selection::generalised_error(float squared_error, float degrees_of_freedom) const {
   const float n = design_.total_weight();
-  const float left = 1.0f - fit.degrees_of_freedom() / n;
-  if (!(left > 1e-3f)) return fit.squared_error() / n;  // a single direction: nothing to compare
-  return fit.squared_error() / (n * left * left);
+  const float left = 1.0f - degrees_of_freedom / n;
+  if (!(left > 1e-3f)) return squared_error / n;  // a single direction: nothing to compare
+  return squared_error / (n * left * left);
 }
 
-float Selection::score(const StepwiseFit& fit) const {
+float Selection::score(float squared_error, float degrees_of_freedom, std::size_t terms,
+                       std::size_t rbfs) const {
   const float n = design_.total_weight();
-  const TermList& terms = fit.terms();
-  if (terms.count > 1 && fit.degrees_of_freedom() > kMostFreedom * n) {
+  if (terms > 1 && degrees_of_freedom > kMostFreedom * n) {
     return std::numeric_limits<float>::infinity();
   }
   const float criterion_weight = criterion_weight_ * n / (n + kCriterionOnset);
-  const auto numbers = static_cast<float>(3 * terms.count + kPriceOfAtom * terms.rbf_count());
-  return 1.5f * n * std::log(generalised_error(fit) + tolerance_ * tolerance_) +
+  const auto numbers = static_cast<float>(3 * terms + kPriceOfAtom * rbfs);
+  const float error = generalised_error(squared_error, degrees_of_freedom);
+  return 1.5f * n * std::log(error + tolerance_ * tolerance_) +
          0.5f * criterion_weight * numbers * std::log(std::max(2.0f, n));
 }
 
+float Selection::score(const StepwiseFit& fit) const {
+  return score(fit.squared_error(), fit.degrees_of_freedom(), fit.terms().count,
+               fit.terms().rbf_count());
+}
+
+// Whether so many further terms could lead to a better score if each lowered the error by as much
+// as the next one does. Gains hardly ever grow on the way.
+bool Selection::is_promising(float gain, int further_terms, float best_score) const {
+  for (int more = 1; more <= further_terms; ++more) {
+    const auto count = static_cast<std::size_t>(more);
+    const float error = fit_.squared_error() - static_cast<float>(more) * gain / 3.0f;
+    const float reached = score(std::max(0.0f, error), fit_.degrees_of_freedom(),
+                                fit_.terms().count + count, fit_.terms().rbf_count() + count);
+    if (reached < best_score) return true;
+  }
+  return false;
+}
+
 // Best prefix of the greedy path.
-Selection::Scored Selection::grown(std::size_t base_terms) {
+Selection::Scored Selection::grown(const TermList& start) {
   Candidates candidates = all_candidates_;
-  fit_.start(design_);
-  fit_is_current_ = true;
+  fit(start);
   ++fits_;
-  for (FunctionIdx idx = 0; idx < base_terms; ++idx) {
-    fit_.push(design_, idx);
-    follow(candidates);
+  follow(candidates, fit_.terms().count);
+  for (std::size_t i = start.base_terms(); i < start.count; ++i) {
+    take_out(candidates, start.function[i]);
   }
   Scored best{fit_.terms(), score(fit_)};
   int in_vain = 0;
   while (in_vain <= kPatience && fit_.terms().rbf_count() < kMaxRbfs) {
     const auto rbf = take_best(candidates);
-    if (!rbf) break;
-    design_.evaluate(*rbf);
-    if (!fit_.push(design_, *rbf)) continue;
-    follow(candidates);
+    if (!rbf || !is_promising(rbf->gain, kPatience + 1 - in_vain, best.score)) break;
+    design_.evaluate(rbf->idx);
+    if (!fit_.push(design_, rbf->idx)) continue;
+    follow(candidates, 1);
     ++fits_;
     const float reached = score(fit_);
     ++in_vain;
@@ -137,10 +161,21 @@ void Selection::try_terms(const TermList& terms, Scored& best) {
 TermList Selection::best_terms() {
   if (design_.rows() < kFewestSamples) return TermList::base(kConstantBase);
   list_candidates();
-  const Scored constant = pruned(grown(kConstantBase));
+  const Scored constant = pruned(grown(TermList::base(kConstantBase)));
   if (design_.rows() < kFewestForLinear) return constant.terms;
-  const Scored linear = pruned(grown(kLinearBase));
+  const Scored linear = pruned(grown(TermList::base(kLinearBase)));
   return linear.score < constant.score ? linear.terms : constant.terms;
+}
+
+TermList Selection::revised(const TermList& terms) {
+  if (design_.rows() < kFewestForLinear) return best_terms();
+  list_candidates();
+  design_.evaluate(terms);
+  Scored best{terms, std::numeric_limits<float>::infinity()};
+  try_terms(terms, best);
+  try_terms(terms.with_base(terms.base_terms() == kConstantBase ? kLinearBase : kConstantBase),
+            best);
+  return pruned(grown(pruned(best).terms)).terms;
 }
 
 // Judges every sample by the residual it would have had were it not in the fit: a lone outlier with
@@ -219,7 +254,8 @@ SelectedModel Selection::outcome(std::span<const DirectedColour> samples, const 
   fit(terms);
   ++fits_;
   judge_samples();
-  const float error = generalised_error(fit_) + tolerance_ * tolerance_;
+  const float error =
+      generalised_error(fit_.squared_error(), fit_.degrees_of_freedom()) + tolerance_ * tolerance_;
   return {fit_.model(), std::sqrt(error), fits_, {left_out_residual_.data(), samples.size()}};
 }
 
@@ -237,7 +273,7 @@ SelectedModel Selection::choose(std::span<const DirectedColour> samples) {
     fit(terms);
     const Judgement judgement = pass == 0 ? Judgement::by_patch : Judgement::by_neighbours;
     if (!discount_suspects(samples, judgement)) break;
-    terms = best_terms();
+    terms = revised(terms);
   }
   return outcome(samples, terms);
 }
@@ -281,11 +317,7 @@ SelectedModel Selection::step(std::span<const DirectedColour> samples, const Pat
   try_terms(best.terms, best);
   // Upgrade the base.
   if (best.terms.base_terms() == kConstantBase && design_.rows() >= kFewestForLinear) {
-    TermList linear = TermList::base(kLinearBase);
-    for (std::size_t i = kConstantBase; i < best.terms.count; ++i) {
-      linear.push(best.terms.function[i]);
-    }
-    try_terms(linear, best);
+    try_terms(best.terms.with_base(kLinearBase), best);
   }
   // Add a RBF, take one away.
   if (const auto more = with_best_rbf(best.terms, seen_at)) try_terms(*more, best);

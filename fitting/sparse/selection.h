@@ -42,9 +42,9 @@ class Selection {
 
   void set_tolerance(float tolerance) { tolerance_ = tolerance; }
 
-  /// From nothing: forward from both bases, backward, then up to twice more with outliers weighed
-  /// down (by their leave-one-out residuals) and saturated samples censored. Depends on
-  /// the samples only. 1 to kMaxStoredSamples samples.
+  /// From nothing: forward from both bases, backward; then up to twice, with outliers weighed down
+  /// (by their leave-one-out residuals) and saturated samples censored, backward and forward from
+  /// there. Depends on the samples only. 1 to kMaxStoredSamples samples.
   SelectedModel choose(std::span<const DirectedColour> samples);
 
   /// One step from `model`, given the sample that was just seen: refit, then at most one move
@@ -59,20 +59,30 @@ class Selection {
   };
   /// Every atom's worth as the next term: with d = |a|^2 + ridge less what the chosen terms explain
   /// of it, and s its product with the residual, adding it lowers the penalised error by |s|^2 / d.
-  /// Both follow each new direction without a pass over the earlier ones.
+  /// Both follow new directions without a pass over the earlier ones.
   struct Candidates {
     AtomLine remainder;                   ///< d; 0 for what cannot be chosen
     std::array<AtomLine, 3> correlation;  ///< s, by channel
   };
 
-  [[nodiscard]] float generalised_error(const StepwiseFit& fit) const;
+  [[nodiscard]] float generalised_error(float squared_error, float degrees_of_freedom) const;
+  [[nodiscard]] float score(float squared_error, float degrees_of_freedom, std::size_t terms,
+                            std::size_t rbfs) const;
   [[nodiscard]] float score(const StepwiseFit& fit) const;
   void list_candidates();
-  void follow(Candidates& candidates) const;
-  [[nodiscard]] static std::optional<FunctionIdx> take_best(Candidates& candidates);
-  [[nodiscard]] Scored grown(std::size_t base_terms);
+  void follow(Candidates& candidates, std::size_t new_terms) const;
+  void take_out(Candidates& candidates, FunctionIdx idx) const;
+  /// An atom and by how much it lowers the penalised error.
+  struct Candidate {
+    FunctionIdx idx;
+    float gain;
+  };
+  [[nodiscard]] std::optional<Candidate> take_best(Candidates& candidates) const;
+  [[nodiscard]] bool is_promising(float gain, int further_terms, float best_score) const;
+  [[nodiscard]] Scored grown(const TermList& start);
   [[nodiscard]] Scored pruned(Scored start);
   [[nodiscard]] TermList best_terms();
+  [[nodiscard]] TermList revised(const TermList& terms);
   /// What a sample's residual is compared with.
   enum class Judgement { by_patch, by_neighbours };
   [[nodiscard]] bool discount_suspects(std::span<const DirectedColour> samples,

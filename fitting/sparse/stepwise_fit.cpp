@@ -2,6 +2,7 @@
 #include "fitting/sparse/stepwise_fit.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <limits>
@@ -23,24 +24,6 @@ struct Ridge {
   float onset = 96.0f;       ///< weight at which half of the growth is reached
 };
 constexpr Ridge kRidge;
-
-const AtomPlaces& places_of_atoms() {
-  static const AtomPlaces all = [] {
-    constexpr float far_outside = 8.0f;
-    AtomPlaces places;
-    std::fill_n(places.center_u.atom, kAtomPlaces, far_outside);
-    std::fill_n(places.center_v.atom, kAtomPlaces, far_outside);
-    std::fill_n(places.per_squared_support.atom, kAtomPlaces, 1.0f);
-    for (std::size_t k = 0; k < atoms().size(); ++k) {
-      const Atom& atom = atoms()[k];
-      places.center_u.atom[k] = atom.center.x();
-      places.center_v.atom[k] = atom.center.y();
-      places.per_squared_support.atom[k] = 1.0f / (atom.support * atom.support);
-    }
-    return places;
-  }();
-  return all;
-}
 
 }  // namespace
 
@@ -65,6 +48,12 @@ bool TermList::operator==(const TermList& other) const {
 bool TermList::begins_with(const TermList& first) const {
   return first.count <= count &&
          std::equal(first.function.data(), first.function.data() + first.count, function.data());
+}
+
+TermList TermList::with_base(std::size_t base_terms_wanted) const {
+  TermList terms = base(base_terms_wanted);
+  for (std::size_t i = base_terms(); i < count; ++i) terms.push(function[i]);
+  return terms;
 }
 
 TermList TermList::base(std::size_t base_terms) {
@@ -137,8 +126,11 @@ void Design::load(std::span<const DirectedColour> samples) {
   }
   has_lines_ = false;
   evaluated_.reset();
-  for (FunctionIdx idx = 0; idx < kLinearBase; ++idx) evaluated_.set(idx);
-  set_ridge();
+  total_weight_ = columns::dot(root_weight_, root_weight_, padded_rows());
+  for (FunctionIdx idx = 0; idx < kLinearBase; ++idx) {
+    evaluated_.set(idx);
+    set_ridge(idx);
+  }
 }
 
 void Design::evaluate(FunctionIdx idx) {
@@ -154,15 +146,55 @@ void Design::evaluate(const TermList& terms) {
   for (std::size_t i = 0; i < terms.count; ++i) evaluate(terms.function[i]);
 }
 
+// No weight is above 1: a squared length of .02 needs a sample where the RBF is .0125 or more.
+void Design::list_atoms(AtomPlaces& places) {
+  constexpr float far_outside = 8.0f;
+  AtomSet felt{};
+  for (std::size_t row = 0; row < rows_; ++row) {
+    const AtomSet& here = atoms_felt_at({u_.row[row], v_.row[row]});
+    for (std::size_t word = 0; word < felt.size(); ++word) felt[word] |= here[word];
+  }
+  std::size_t count = 0;
+  for (std::size_t word = 0; word < felt.size(); ++word) {
+    for (std::uint64_t left = felt[word]; left != 0; left &= left - 1) {
+      const std::size_t id = 64 * word + static_cast<std::size_t>(std::countr_zero(left));
+      const Atom& atom = atoms()[id];
+      measured_atom_[count] = static_cast<std::uint16_t>(id);
+      places.center_u.atom[count] = atom.center.x();
+      places.center_v.atom[count] = atom.center.y();
+      places.per_squared_support.atom[count] = 1.0f / (atom.support * atom.support);
+      ++count;
+    }
+  }
+  atom_count_ = count;
+  padded_atoms_ = (count + kAtomGroup - 1) / kAtomGroup * kAtomGroup;
+  for (; count < padded_atoms_; ++count) {
+    places.center_u.atom[count] = places.center_v.atom[count] = far_outside;
+    places.per_squared_support.atom[count] = 1.0f;
+  }
+}
+
+std::optional<std::size_t> Design::place_of(FunctionIdx atom) const {
+  const auto end = measured_atom_.begin() + static_cast<std::ptrdiff_t>(atom_count_);
+  const auto id = static_cast<std::uint16_t>(atom - kLinearBase);
+  const auto found = std::lower_bound(measured_atom_.begin(), end, id);
+  if (found == end || *found != id) return std::nullopt;
+  return static_cast<std::size_t>(found - measured_atom_.begin());
+}
+
 void Design::measure_atoms(AtomLine& squared, AtomLine& ridge) {
-  if (!has_lines_) columns::atom_lines(u_, v_, rows_, places_of_atoms(), lines_.get());
-  has_lines_ = true;
+  if (!has_lines_) {
+    AtomPlaces places;
+    list_atoms(places);
+    columns::atom_lines(u_, v_, rows_, places, padded_atoms_, lines_.get());
+    has_lines_ = true;
+  }
   Column squared_weight;
   for (std::size_t row = 0; row < rows_; ++row) {
     squared_weight.row[row] = root_weight_.row[row] * root_weight_.row[row];
   }
-  columns::atom_squares(lines_.get(), rows_, squared_weight, ridge, squared);
-  for (float& each : ridge.atom) each = ridge_of_atom(each);
+  columns::atom_squares(lines_.get(), rows_, padded_atoms_, squared_weight, ridge, squared);
+  for (std::size_t k = 0; k < padded_atoms_; ++k) ridge.atom[k] = ridge_of_atom(ridge.atom[k]);
 }
 
 void Design::atom_products(const Column* of, AtomLine* sum) const {
@@ -172,16 +204,24 @@ void Design::atom_products(const Column* of, AtomLine* sum) const {
       factor[c].row[row] = root_weight_.row[row] * of[c].row[row];
     }
   }
-  columns::atom_sums(lines_.get(), rows_, factor.data(), sum);
+  columns::atom_sums(lines_.get(), rows_, padded_atoms_, factor.data(), sum);
 }
 
-void Design::take_away(const Column& direction, const Eigen::Vector3f& along, AtomLine& remainder,
-                       AtomLine* correlation) const {
-  Column factor;
-  for (std::size_t row = 0; row < rows_; ++row) {
-    factor.row[row] = root_weight_.row[row] * direction.row[row];
+void Design::take_away(std::span<const Column> directions, std::span<const Eigen::Vector3f> along,
+                       AtomLine& remainder, AtomLine* correlation) const {
+  constexpr std::size_t at_once = 4;
+  std::array<Column, at_once> factor;
+  for (std::size_t first = 0; first < directions.size(); first += at_once) {
+    const std::size_t count = std::min(at_once, directions.size() - first);
+    for (std::size_t j = 0; j < count; ++j) {
+      const Column& direction = directions[first + j];
+      for (std::size_t row = 0; row < rows_; ++row) {
+        factor[j].row[row] = root_weight_.row[row] * direction.row[row];
+      }
+    }
+    columns::take_away(lines_.get(), rows_, padded_atoms_, factor.data(), along[first].data(),
+                       count, remainder, correlation);
   }
-  columns::take_away(lines_.get(), rows_, factor, along.data(), remainder, correlation);
 }
 
 void Design::reweigh(std::span<const float> factor) {

@@ -13,6 +13,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
 namespace sheen::fitting::sparse {
@@ -37,6 +38,8 @@ struct TermList {
     return count > 1 && function[1] == 1 ? kLinearBase : kConstantBase;
   }
   [[nodiscard]] std::size_t rbf_count() const { return count - base_terms(); }
+  /// The same RBFs on another base.
+  [[nodiscard]] TermList with_base(std::size_t base_terms) const;
   /// The base alone.
   static TermList base(std::size_t base_terms);
   /// The functions of a model.
@@ -56,14 +59,23 @@ class Design {
   void evaluate(FunctionIdx idx);
   void evaluate(const TermList& terms);
 
-  /// Every atom's squared length at the samples and its ridge, to choose among all of them.
+  /// Squared lengths and ridges of all atoms whose squared length at the samples is .02 or more,
+  /// and of some others, to choose among them.
   void measure_atoms(AtomLine& squared, AtomLine& ridge);
-  /// sum[c] = products of all atoms with three row-scaled columns; after `measure_atoms`.
+  /// How many these are; after `measure_atoms`, as all that follows. Rounded up to whole groups of
+  /// atoms; what is behind the last is zero.
+  [[nodiscard]] std::size_t atom_count() const { return padded_atoms_; }
+  [[nodiscard]] FunctionIdx atom_at(std::size_t place) const {
+    return kLinearBase + measured_atom_[place];
+  }
+  /// Where an atom is among these; nothing where it is not.
+  [[nodiscard]] std::optional<std::size_t> place_of(FunctionIdx atom) const;
+  /// sum[c] = products of these atoms with three row-scaled columns.
   void atom_products(const Column* columns, AtomLine* sum) const;
-  /// With s the products of all atoms with a row-scaled column: takes s^2 from the remainder and
-  /// along[c] * s from the correlations, c < 3; after `measure_atoms`.
-  void take_away(const Column& direction, const Eigen::Vector3f& along, AtomLine& remainder,
-                 AtomLine* correlation) const;
+  /// For each row-scaled column, with s the products of these atoms
+  /// with it: takes s^2 from the remainder and along[c] * s from the correlations, c < 3.
+  void take_away(std::span<const Column> directions, std::span<const Eigen::Vector3f> along,
+                 AtomLine& remainder, AtomLine* correlation) const;
 
   /// Multiplies the weight of every sample, in (0, 1].
   void reweigh(std::span<const float> factor);
@@ -90,6 +102,7 @@ class Design {
   void set_ridge();
   void set_ridge(FunctionIdx idx);
   [[nodiscard]] float ridge_of_atom(float covered) const;
+  void list_atoms(AtomPlaces& places);
 
   std::size_t rows_ = 0;
   float total_weight_ = 0;
@@ -97,6 +110,9 @@ class Design {
   std::bitset<kMaxFunctions> evaluated_;
   std::unique_ptr<AtomLine[]> lines_ = std::make_unique<AtomLine[]>(kColumnRows);  // unweighted
   bool has_lines_ = false;
+  std::array<std::uint16_t, kMaxAtoms> measured_atom_{};  // ids, ascending
+  std::size_t atom_count_ = 0;
+  std::size_t padded_atoms_ = 0;
   Column u_, v_;  // far outside the disc behind the last sample
   Column root_weight_;
   std::array<Column, 3> colours_;
@@ -127,11 +143,13 @@ class StepwiseFit {
   [[nodiscard]] const Column& residuals(std::size_t channel) const { return residuals_[channel]; }
   /// Diagonal of the hat matrix.
   void leverages(Column& out) const;
-  /// Last direction that was added, orthonormal to the others with the ridge's rows; its
-  /// projection of the colours.
-  [[nodiscard]] const Column& last_direction() const { return directions_[terms_.count - 1]; }
-  [[nodiscard]] const Eigen::Vector3f& last_projection() const {
-    return projections_[terms_.count - 1];
+  /// The last directions that were added, orthonormal to the others with the ridge's rows; their
+  /// projections of the colours.
+  [[nodiscard]] std::span<const Column> last_directions(std::size_t count) const {
+    return std::span(directions_).subspan(terms_.count - count, count);
+  }
+  [[nodiscard]] std::span<const Eigen::Vector3f> last_projections(std::size_t count) const {
+    return std::span(projections_).subspan(terms_.count - count, count);
   }
   /// The terms as a model.
   [[nodiscard]] PatchModel model() const;

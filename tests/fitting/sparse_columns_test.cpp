@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/iwls/wendland.h"
 #include "fitting/sparse/columns.h"
+#include "fitting/sparse/patch_model.h"
 #include "tests/fitting/samples_for_tests.h"
 
 #include <gtest/gtest.h>
@@ -122,7 +123,7 @@ struct Lines {
       places.center_v.atom[k] = 0.2f;
       places.per_squared_support.atom[k] = 1.0f / (0.7f * 0.7f);
     }
-    columns::atom_lines(at.u, at.v, kSamples, places, line.data());
+    columns::atom_lines(at.u, at.v, kSamples, places, kAtomPlaces, line.data());
   }
 };
 
@@ -150,13 +151,13 @@ TEST(SparseColumns, SumsOverAtomLinesAreThoseOfPlainLoops) {
   std::array<AtomLine, 3> sum;
   AtomLine covered;
   AtomLine squared;
-  columns::atom_sums(lines.line.data(), kSamples, factor.data(), sum.data());
-  columns::atom_squares(lines.line.data(), kSamples, factor[0], covered, squared);
+  columns::atom_sums(lines.line.data(), kSamples, kAtomPlaces, factor.data(), sum.data());
+  columns::atom_squares(lines.line.data(), kSamples, kAtomPlaces, factor[0], covered, squared);
   AtomLine remainder{};
   std::array<AtomLine, 3> correlation{};
   const std::array<float, 3> along{1.0f, -2.0f, 0.5f};
-  columns::take_away(lines.line.data(), kSamples, factor[0], along.data(), remainder,
-                     correlation.data());
+  columns::take_away(lines.line.data(), kSamples, kAtomPlaces, factor.data(), along.data(), 1,
+                     remainder, correlation.data());
   for (const std::size_t k : Lines::kAtoms) {
     std::array<float, 3> expected{};
     float expected_squared = 0;
@@ -172,6 +173,46 @@ TEST(SparseColumns, SumsOverAtomLinesAreThoseOfPlainLoops) {
     EXPECT_NEAR(covered.atom[k], expected[0], kRounding);
     EXPECT_NEAR(squared.atom[k], expected_squared, kRounding);
     EXPECT_NEAR(remainder.atom[k], -expected[0] * expected[0], 10 * kRounding);
+  }
+}
+
+TEST(SparseColumns, SeveralColumnsTakeAwayWhatEachDoes) {
+  // The same sums in the same order: equal to the bit.
+  const Lines lines;
+  std::mt19937 random(9);
+  const std::array<Column, 3> factor{random_column(random), random_column(random),
+                                     random_column(random)};
+  const std::array<float, 9> along{1.0f, -2.0f, 0.5f, 0.1f, 3.0f, -1.0f, 0.7f, 0.2f, -0.4f};
+  AtomLine together{}, apart{};
+  std::array<AtomLine, 3> correlations{}, correlations_apart{};
+  columns::take_away(lines.line.data(), kSamples, kAtomPlaces, factor.data(), along.data(), 3,
+                     together, correlations.data());
+  for (std::size_t j = 0; j < factor.size(); ++j) {
+    columns::take_away(lines.line.data(), kSamples, kAtomPlaces, &factor[j], &along[3 * j], 1,
+                       apart, correlations_apart.data());
+  }
+  for (const std::size_t k : Lines::kAtoms) {
+    EXPECT_EQ(together.atom[k], apart.atom[k]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_EQ(correlations[c].atom[k], correlations_apart[c].atom[k]);
+    }
+  }
+}
+
+TEST(SparseColumns, AtomsFeltSomewhereAreListed) {
+  // A squared length of .02 over 128 samples of weight 1 needs one of sqrt(.02 / 128) = .0125.
+  for (const Eigen::Vector2f& uv : testing::disc_grid()) {
+    const AtomSet& felt = atoms_felt_at(uv);
+    std::size_t count = 0;
+    for (std::size_t id = 0; id < atoms().size(); ++id) {
+      const Atom& atom = atoms()[id];
+      const bool is_listed = (felt[id / 64] >> id % 64 & 1) != 0;
+      count += is_listed ? 1 : 0;
+      if (iwls::wendland((uv - atom.center).norm() / atom.support) >= 0.0125f) {
+        EXPECT_TRUE(is_listed) << id;
+      }
+    }
+    EXPECT_LT(count, atoms().size());
   }
 }
 
