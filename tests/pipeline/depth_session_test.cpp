@@ -64,8 +64,9 @@ const fitting::depth_quads::DepthQuads& quads_of(const Reconstruction& fitted) {
 }
 
 // Files hold the truth to half a step of .1 mm, traced through the lens; the z-buffer joins the
-// projected vertices by straight lines, which over an edge of 4 pixels the barrel bends by thousandths
-// of one. So no more than cells whose middle lies on an outline, where two surfaces meet, differ.
+// projected vertices by straight lines, which over an edge of 4 pixels the barrel bends by
+// thousandths of one. So no more than cells whose middle lies on an outline, where two surfaces
+// meet, differ.
 TEST_F(DepthSession, QuadsFromFilesAreThoseFromTheMesh) {
   ProgressSink sink;
   const Reconstruction from_files = fitted("session", sink), from_mesh = fitted("mesh", sink);

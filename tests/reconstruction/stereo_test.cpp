@@ -2,6 +2,7 @@
 // A printed plane, drawn in closed form, under a hull that stands too high over it.
 #include "reconstruction/stereo/carve_roofs.h"
 #include "reconstruction/stereo/depth_maps.h"
+#include "reconstruction/stereo/proven_carving.h"
 #include "reconstruction/stereo/semi_global.h"
 #include "reconstruction/surface/marching_tetrahedra.h"
 #include "tests/reconstruction/stage_for_tests.h"
@@ -149,6 +150,33 @@ TEST(Stereo, LeavesAHullThatIsRight) {
   DistanceGrid carved = hull;
   carve_roofs(depths_of(views_of_plane(24, 1), hull), 0.003F, 1, carved);
   for (const float x : {-0.02F, 0.0F, 0.015F}) EXPECT_EQ(top_at(carved, x, 0), top_at(hull, x, 0));
+}
+
+// The views that judge see the plane's print where the carving says it is, not on the roof.
+TEST(ProvenCarving, KeepsTheRoofCarvedDownToThePlane) {
+  const DistanceGrid hull = hull_over_plane();
+  DistanceGrid carved = hull;
+  const DepthMaps& maps = depths_of_printed_plane();
+  carve_roofs(maps, 0.003F, 1, carved);
+  const float top_m = top_at(carved, 0, 0.01F);
+  keep_proven_carving(maps, hull, 1, carved);
+  EXPECT_EQ(top_at(carved, 0, 0.01F), top_m);
+  EXPECT_NEAR(top_m, 0, maps.pixel_m);
+}
+
+// A pit dug into a plane that was right explains nothing better: it is filled up again.
+TEST(ProvenCarving, FillsAPitThatTheViewsDoNotShow) {
+  DistanceGrid hull = hull_over_plane();
+  for (std::size_t i = 0; i < hull.count(); ++i) hull[i] = std::max(hull[i], hull.point(i).z());
+  DistanceGrid carved = hull;
+  for (std::size_t i = 0; i < hull.count(); ++i) {
+    const Eigen::Vector3f p = hull.point(i);
+    const float into_pit = std::min(0.012F - p.head<2>().norm(), p.z() + 0.01F);
+    carved[i] = std::max(hull[i], into_pit);
+  }
+  ASSERT_LT(top_at(carved, 0, 0), -0.009F);
+  keep_proven_carving(depths_of_printed_plane(), hull, 2, carved);
+  for (std::size_t i = 0; i < hull.count(); ++i) ASSERT_EQ(carved[i], hull[i]);
 }
 
 TEST(Stereo, ThreadsChangeNoBit) {
