@@ -15,10 +15,10 @@ namespace sheen::capture {
 struct CameraListing {
   std::filesystem::path device;  ///< /dev/video0
   std::string name;
-  std::string bus;                      ///< where it is plugged in
-  std::vector<CameraMode> modes;        ///< in a format that can be read; may be empty
-  std::vector<CameraControl> controls;  ///< with their present values
-  std::string fault;                    ///< why it could not be asked, else empty
+  std::string bus = {};                      ///< where it is plugged in
+  std::vector<CameraMode> modes = {};        ///< in a format that can be read; may be empty
+  std::vector<CameraControl> controls = {};  ///< with their present values
+  std::string fault = {};                    ///< why it could not be asked, else empty
 };
 
 /// Every camera of the machine. Video devices that are not cameras are left out; one that cannot

@@ -162,10 +162,14 @@ TEST(CameraLooks, GoThroughListedAndAddedCamerasOnAThreadOfTheirOwn) {
   };
   while (!is_done()) news.acquire();  // ctest ends what never comes
   for (const app::CameraLook& look : looks.looks()) {
-    if (look.address == "/dev/played") EXPECT_FALSE(look.picture.empty());
-    if (look.address == "/dev/locked") EXPECT_EQ(look.fault, "belongs to another");
-    if (look.address == "http://nobody/")
+    if (look.address == "/dev/played") {
+      EXPECT_FALSE(look.picture.empty());
+    } else if (look.address == "/dev/locked") {
+      EXPECT_EQ(look.fault, "belongs to another");
+    } else {
+      EXPECT_EQ(look.address, "http://nobody/");
       EXPECT_NE(look.fault.find("leads nowhere"), std::string::npos);
+    }
   }
 }
 

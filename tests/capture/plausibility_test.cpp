@@ -91,13 +91,13 @@ TEST(SceneCheck, PosesInOtherUnitsShowAnObjectOfNoPixels) {
 }
 
 TEST(SceneCheck, APlaceFarFromTheCamerasNamesTheTransform) {
-  // Poses and mesh in metres, the place in millimetres: 200 m away, and the cameras round the
+  // Poses and mesh in metres, the place in millimetres: 297 m away, and the cameras round the
   // origin of their poses.
   Scene scene;
   const auto there = scene.view_from(0.5);
   scene.session.board.reset();
   scene.session.poses = "session/poses.txt";
-  scene.session.board_from_object.translation() *= 1000;
+  scene.session.board_from_object.translation() = Eigen::Vector3d(220, 200, 0);
   SceneCheck check(scene.session, scene.mesh, nullptr);
   for (int i = 0; i < 10; ++i) check.see(there);
   expect_bad_input([&] { check.check_views(); }, "session.json", "T_stage_object", "millimetres");

@@ -297,7 +297,7 @@ TEST(ReadMesh, PlyFacesMayComeBeforeTheirVertices) {
 
 TEST(ReadMesh, GlbKeepsVerticesAndAppliesTransforms) {
   const TemporaryFolder folder;
-  // Vertex 1 is used by nothing, vertices 0 and 4 share a position.
+  // Vertex 1 is used by nothing: it moves to the first corner. Vertices 0 and 4 share a position.
   const std::vector<Eigen::Vector3f> positions = {{0, 0, 0}, {9, 9, 9}, {1, 0, 0},
                                                   {0, 1, 0}, {0, 0, 0}, {-1, 0, 0}};
   const std::vector<std::uint32_t> indices = {0, 2, 3, 4, 3, 5};
@@ -306,8 +306,8 @@ TEST(ReadMesh, GlbKeepsVerticesAndAppliesTransforms) {
   const Mesh mesh = read_mesh(path);
   ASSERT_EQ(mesh.positions.size(), positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    EXPECT_EQ(mesh.positions[i], Eigen::Vector3f(2 * positions[i].x() + 1, positions[i].y() + 2,
-                                                 positions[i].z() + 3));
+    const Eigen::Vector3f& p = positions[i == 1 ? indices[0] : i];
+    EXPECT_EQ(mesh.positions[i], Eigen::Vector3f(2 * p.x() + 1, p.y() + 2, p.z() + 3));
   }
   ASSERT_EQ(mesh.triangles.size(), 2u);
   EXPECT_EQ(mesh.triangles[1], (Eigen::Matrix<std::uint32_t, 3, 1>(4, 3, 5)));

@@ -19,7 +19,9 @@ TEST_F(DeviceLooks, EveryListedCameraShowsItsPictureOrOneLine) {
     const app::CameraLook look = app::look_through(cameras, camera.device.string(), camera.name);
     EXPECT_NE(look.picture.empty(), look.fault.empty()) << camera.device;
     EXPECT_EQ(look.fault.find('\n'), std::string::npos);
-    if (camera.device == webcam_node) EXPECT_FALSE(look.picture.empty()) << look.fault;
+    if (camera.device == webcam_node) {
+      EXPECT_FALSE(look.picture.empty()) << look.fault;
+    }
   }
 }
 
