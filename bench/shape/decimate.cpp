@@ -27,6 +27,8 @@ core::Mesh read_in_board_frame(const std::filesystem::path& source) {
   core::Mesh mesh = core::read_mesh(session.mesh);
   session.take_offset(mesh.offset);
   for (auto& p : mesh.positions) p = (session.board_from_object * p.cast<double>()).cast<float>();
+  const Eigen::Matrix3f turn = session.board_from_object.linear().cast<float>();
+  for (auto& normal : mesh.normals) normal = turn * normal;
   mesh.offset.setZero();
   return mesh;
 }
