@@ -136,8 +136,9 @@ void judge_grid(const MeshFile& file, const Eigen::AlignedBox3d& box, const fs::
   notes.push_back(std::string(fault) + "; " + remedy);
 }
 
-/// Vertices that no triangle uses, as cleaned scans leave them, are no part of the surface: they
-/// move to one that is, so that none of them counts for its size or place. They keep their numbers.
+/// Vertices that no triangle uses and that lie far off the surface, as cleaned scans leave them,
+/// are no part of it: they move to one that is, so that none of them counts for its size or place.
+/// They keep their numbers.
 void place_unused(MeshFile& file, std::vector<std::string>& notes) {
   if (file.triangles.empty()) return;
   std::vector<std::uint8_t> is_used(file.positions.size(), 0);
@@ -149,16 +150,18 @@ void place_unused(MeshFile& file, std::vector<std::string>& notes) {
     if (is_used[i] != 0) box.extend(file.positions[i]);
   }
   const Eigen::Vector3d place = file.positions[file.triangles.front()[0]];
-  std::size_t outside = 0;
+  std::size_t far_off = 0;
   for (std::size_t i = 0; i < is_used.size(); ++i) {
     if (is_used[i] != 0) continue;
-    outside += box.contains(file.positions[i]) ? 0 : 1;
+    const Eigen::Vector3d& unused = file.positions[i];
+    if (unused.allFinite() && box.exteriorDistance(unused) <= box.diagonal().norm()) continue;
     file.positions[i] = place;
+    ++far_off;
   }
-  if (outside == 0) return;
-  notes.push_back(std::to_string(outside) +
-                  " of its vertices belong to no triangle and lie off the surface; they are passed "
-                  "over");
+  if (far_off == 0) return;
+  notes.push_back(std::to_string(far_off) +
+                  " of its vertices belong to no triangle and lie far off the surface; they are "
+                  "passed over");
 }
 
 Mesh rounded(MeshFile&& file, const fs::path& path, std::vector<std::string>& notes) {
