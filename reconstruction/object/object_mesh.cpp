@@ -38,6 +38,7 @@ constexpr std::size_t kStereoViews = 48;
 constexpr float kStereoObject_px = 300;  // its longest side, at most
 constexpr float kSmoothLimit_cells = 3;
 constexpr int kSmoothRounds = 2;      // against the steps of pixels
+constexpr int kSmoothRoundsMore = 4;  // where triangles would cross else
 constexpr float kFootRounded_px = 1;  // by the triangles at the foot's edge
 
 /// Everything that is kept while an object is measured.
@@ -174,12 +175,23 @@ class Measurement {
     return all == 0 ? 0 : static_cast<float>(covered / all);
   }
 
+  [[nodiscard]] Surface surface_of(const DistanceGrid& grid) const {
+    const core::Mesh hull = march_tetrahedra(grid);
+    return make_surface_mesh({views_, backgrounds_, hull, grid, result_.pixel_m}, threads_,
+                             progress_);
+  }
+
   [[nodiscard]] ObjectMesh make_surface(const Shape& shape) {
-    const core::Mesh hull = march_tetrahedra(shape.grid);
-    refuse_moved_object(session_, covered_share(hull));
+    refuse_moved_object(session_, covered_share(march_tetrahedra(shape.grid)));
     result_.pixel_m = pixel_at(shape.box.center());
-    const SurfaceInputs inputs{views_, backgrounds_, hull, shape.grid, result_.pixel_m};
-    Surface surface = make_surface_mesh(inputs, threads_, progress_);
+    Surface surface = surface_of(shape.grid);
+    if (!surface.is_refined) {  // creases that carving left are smoothed away
+      DistanceGrid smoother = shape.grid;
+      smoother.smooth(kSmoothLimit_cells * smoother.cell_m(), kSmoothRoundsMore, threads_);
+      smoother.cut_below(-kFootRounded_px * result_.pixel_m);
+      Surface again = surface_of(smoother);
+      if (again.is_refined) surface = std::move(again);
+    }
     result_.mesh = std::move(surface.mesh);
     result_.confidence = std::move(surface.confidence);
     result_.edge_m = surface.edge_m;

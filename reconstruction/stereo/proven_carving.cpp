@@ -16,8 +16,10 @@ namespace sheen::reconstruction {
 namespace {
 
 constexpr std::size_t kPredictors = 4;  // views that a pixel is predicted from
-constexpr float kSameDepth_px = 2;      // of a point and the surface in a view that sees it
-constexpr float kMissed = 0.25F;        // of luma: a pixel before which nothing is left
+constexpr float kPredictorCosine =
+    0.87F;                          // of the angle to them, 30 degrees: stereo asked nearer views
+constexpr float kSameDepth_px = 2;  // of a point and the surface in a view that sees it
+constexpr float kMissed = 0.25F;    // of luma: a pixel before which nothing is left
 constexpr double kClearlyBetter = 0.9;  // of the squares that the hull leaves
 constexpr int kLeastJudged = 20;        // that judge a region
 constexpr int kReach_cells = 2;         // of a region's values beyond it
@@ -79,7 +81,7 @@ class Predictor {
 
  private:
   const DepthMaps& maps_;
-  std::vector<std::size_t> order_;  ///< views that judge nothing, those that look alike first
+  std::vector<std::size_t> order_;  ///< views that judge nothing, the best predictors first
 };
 
 /// The region that a ray crosses first between two depths; negative: none.

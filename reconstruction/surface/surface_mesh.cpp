@@ -168,6 +168,7 @@ Surface make_surface_mesh(const SurfaceInputs& inputs, int threads, const WorkPr
     mesh = remesh(moved, surface.edge_m, 2, onto_mesh(tree));
   }
   bool is_simple = untangle(mesh, threads);
+  surface.is_refined = is_simple;
   if (!is_simple) {
     mesh = remesh(inputs.hull, surface.edge_m, kRemeshRounds, onto_zero(inputs.grid));
     is_simple = untangle(mesh, threads);

@@ -24,6 +24,7 @@ struct Surface {
   core::Mesh mesh;                ///< closed, manifold, without self-intersections
   std::vector<float> confidence;  ///< per vertex, [0, 1]
   float edge_m = 0;               ///< length that its edges were made for
+  bool is_refined = false;        ///< else rims could not move it without triangles that cross
 };
 
 /// Triangles sized to the pixels on a hull, moved to where the images show its rims and made flat
