@@ -3,6 +3,7 @@
 
 #include "capture/session/plain_pictures.h"
 #include "capture/session/session_file.h"
+#include "core/image/undistortion.h"
 #include "core/image/write_image.h"
 #include "core/mesh/coloured_ply.h"
 #include "core/text/lower_case.h"
@@ -10,7 +11,6 @@
 #include "pipeline/object_mask.h"
 #include "pipeline/posed_views.h"
 #include "pipeline/reconstruct.h"
-#include "pipeline/undistortion.h"
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
@@ -92,7 +92,7 @@ capture::Dataset write_session_dataset(const capture::Session& given, const Data
   dataset.points = points_of(surface, colours);
 
   // The images.
-  std::optional<Undistortion> undistortion;
+  std::optional<core::Undistortion> undistortion;
   if (options.undistort) undistortion.emplace(session.camera);
   dataset.cameras = {undistortion ? undistortion->camera() : session.camera};
   const std::vector<fs::path> files =

@@ -175,21 +175,21 @@ class Measurement {
     return all == 0 ? 0 : static_cast<float>(covered / all);
   }
 
-  [[nodiscard]] Surface surface_of(const DistanceGrid& grid) const {
-    const core::Mesh hull = march_tetrahedra(grid);
+  [[nodiscard]] Surface surface_of(const DistanceGrid& grid, const core::Mesh& hull) const {
     return make_surface_mesh({views_, backgrounds_, hull, grid, result_.pixel_m}, threads_,
                              progress_);
   }
 
   [[nodiscard]] ObjectMesh make_surface(const Shape& shape) {
-    refuse_moved_object(session_, covered_share(march_tetrahedra(shape.grid)));
+    const core::Mesh hull = march_tetrahedra(shape.grid);
+    refuse_moved_object(session_, covered_share(hull));
     result_.pixel_m = pixel_at(shape.box.center());
-    Surface surface = surface_of(shape.grid);
+    Surface surface = surface_of(shape.grid, hull);
     if (!surface.is_refined) {  // creases that carving left are smoothed away
       DistanceGrid smoother = shape.grid;
       smoother.smooth(kSmoothLimit_cells * smoother.cell_m(), kSmoothRoundsMore, threads_);
       smoother.cut_below(-kFootRounded_px * result_.pixel_m);
-      Surface again = surface_of(smoother);
+      Surface again = surface_of(smoother, march_tetrahedra(smoother));
       if (again.is_refined) surface = std::move(again);
     }
     result_.mesh = std::move(surface.mesh);

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
 
 namespace sheen::reconstruction {
 namespace {
@@ -73,6 +74,26 @@ void sum_windows(const cv::Size& size, std::vector<float>& values, std::vector<f
   }
 }
 
+/// Another view, and how the rays of a view's pixels go there: in homogeneous pixels.
+struct Other {
+  const StraightView& view;
+  Eigen::Vector3f eye;
+  std::vector<Eigen::Vector3f> rays;  ///< per pixel
+};
+
+std::vector<Other> seen_from(const Pixels& pixels, const Eigen::Vector3f& eye,
+                             const std::vector<const StraightView*>& views) {
+  std::vector<Other> others;
+  for (const StraightView* view : views) {
+    Other other{*view, view->pixel_from_board_turn * eye + view->pixel_from_board_shift, {}};
+    for (const auto& ray : pixels.rays) {
+      other.rays.emplace_back(view->pixel_from_board_turn * ray);
+    }
+    others.push_back(std::move(other));
+  }
+  return others;
+}
+
 /// Compares windows of a view with another's at the places where these see a swept surface.
 class Correlator {
  public:
@@ -82,9 +103,8 @@ class Correlator {
 
   /// Correlations [-1, 1] of all pixels at `depth_m` below their nearest depths, each `stride`
   /// after the one before; -1 where too little is seen.
-  void correlate(const StraightView& other, const Eigen::Vector3f& eye, float depth_m,
-                 std::size_t stride, float* correlations) {
-    look_up(other, other.pixel_from_board_turn * eye + other.pixel_from_board_shift, depth_m);
+  void correlate(const Other& other, float depth_m, std::size_t stride, float* correlations) {
+    look_up(other, depth_m);
     for (auto& plane : sums_) sum_windows(pixels_.window.size(), plane, scratch_);
     for (std::size_t i = 0; i < scratch_.size(); ++i) correlations[i * stride] = correlation(i);
   }
@@ -92,22 +112,21 @@ class Correlator {
  private:
   enum Plane : std::size_t { seen, own, others, own_square, others_square, product, planes };
 
-  void look_up(const StraightView& other, const Eigen::Vector3f& eye_px, float depth_m) {
-    const auto right = static_cast<float>(other.luma.cols - 2);
-    const auto bottom = static_cast<float>(other.luma.rows - 2);
+  void look_up(const Other& other, float depth_m) {
+    const cv::Mat& luma = other.view.luma;
+    const auto right = static_cast<float>(luma.cols - 2);
+    const auto bottom = static_cast<float>(luma.rows - 2);
     for (std::size_t i = 0; i < scratch_.size(); ++i) {
       float is_seen = 0;
       float value = 0;
       if (pixels_.nearest_m[i] > 0) {
-        const Eigen::Vector3f place =
-            (pixels_.nearest_m[i] + depth_m) * (other.pixel_from_board_turn * pixels_.rays[i]) +
-            eye_px;
+        const Eigen::Vector3f place = (pixels_.nearest_m[i] + depth_m) * other.rays[i] + other.eye;
         const float x = place.x() / place.z();
         const float y = place.y() / place.z();
         // Windows that reach beyond an outline would compare what stands behind it.
         if (place.z() > 0 && x >= 0 && y >= 0 && x < right && y < bottom &&
-            other.is_object.at<std::uint8_t>(static_cast<int>(y), static_cast<int>(x)) != 0) {
-          value = bilinear_value(other.luma, x, y);
+            other.view.is_object.at<std::uint8_t>(static_cast<int>(y), static_cast<int>(x)) != 0) {
+          value = bilinear_value(luma, x, y);
           is_seen = 1;
         }
       }
@@ -150,14 +169,15 @@ float cost_of(float* correlations, std::size_t count) {
 }
 
 MatchingCosts costs_of(const Pixels& pixels, const Eigen::Vector3f& eye,
-                       const std::vector<const StraightView*>& others, const SweptRange& range) {
+                       const std::vector<const StraightView*>& views, const SweptRange& range) {
+  const std::vector<Other> others = seen_from(pixels, eye, views);
   const auto steps = static_cast<std::size_t>(range.steps);
   MatchingCosts costs{pixels.window.size(), steps, std::vector<float>(pixels.luma.size() * steps)};
   Correlator correlator(pixels);
   std::vector<float> correlations(pixels.luma.size() * others.size());
   for (std::size_t step = 0; step < steps; ++step) {
     for (std::size_t o = 0; o < others.size(); ++o) {
-      correlator.correlate(*others[o], eye, static_cast<float>(step) * range.step_m, others.size(),
+      correlator.correlate(others[o], static_cast<float>(step) * range.step_m, others.size(),
                            correlations.data() + o);
     }
     for (std::size_t i = 0; i < pixels.luma.size(); ++i) {

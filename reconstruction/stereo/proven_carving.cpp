@@ -31,7 +31,14 @@ struct Verdict {
   int pixels = 0;
 };
 
-/// A surface and how deep each view sees it.
+/// How deep each view sees the hull.
+std::vector<cv::Mat> hull_depths(const DepthMaps& maps) {
+  std::vector<cv::Mat> depths;
+  for (const StraightView& view : maps.views) depths.push_back(view.hull);
+  return depths;
+}
+
+/// How deep each view sees the surface of a grid.
 std::vector<cv::Mat> depths_of(const DepthMaps& maps, const DistanceGrid& grid, int threads) {
   const core::Mesh surface = march_tetrahedra(grid);
   std::vector<cv::Mat> depths(maps.views.size());
@@ -168,8 +175,8 @@ void keep_proven_carving(const DepthMaps& maps, const DistanceGrid& hull, int th
     gone[i] = hull[i] < 0 && carved[i] >= 0 ? -1.0F : 1.0F;
   }
   const Components regions = find_components(gone);
-  const auto hull_depths = depths_of(maps, hull, threads);
-  const auto carved_depths = depths_of(maps, carved, threads);
+  const std::vector<cv::Mat> above = hull_depths(maps);
+  const std::vector<cv::Mat> below = depths_of(maps, carved, threads);
   std::vector<std::vector<Verdict>> by_view(maps.views.size());
   core::parallel_for(
       by_view.size(), threads,
@@ -177,7 +184,7 @@ void keep_proven_carving(const DepthMaps& maps, const DistanceGrid& hull, int th
         for (std::size_t v = begin; v < end; ++v) {
           if (!is_judge(v)) continue;
           by_view[v].resize(regions.parts.size());
-          judge(maps, v, regions, hull, hull_depths, carved_depths, by_view[v]);
+          judge(maps, v, regions, hull, above, below, by_view[v]);
         }
       },
       1);

@@ -5,15 +5,15 @@
 
 #include <opencv2/core/mat.hpp>
 
-namespace sheen::pipeline {
+namespace sheen::core {
 
 /// Images of a camera as a camera without distortion would have taken them, of the same focal
 /// length, principal point and size.
 class Undistortion {
  public:
-  explicit Undistortion(const core::CameraModel& camera);
+  explicit Undistortion(const CameraModel& camera);
 
-  [[nodiscard]] const core::CameraModel& camera() const { return camera_; }  ///< without distortion
+  [[nodiscard]] const CameraModel& camera() const { return camera_; }  ///< without distortion
 
   /// CV_8UC3 -> CV_8UC3; black where the distorted image ends.
   [[nodiscard]] cv::Mat image(const cv::Mat& distorted) const;
@@ -22,9 +22,9 @@ class Undistortion {
   [[nodiscard]] const cv::Mat& covered() const { return covered_; }
 
  private:
-  core::CameraModel camera_;
+  CameraModel camera_;
   cv::Mat places_;  ///< CV_32FC2: of each pixel in the distorted image
   cv::Mat covered_;
 };
 
-}  // namespace sheen::pipeline
+}  // namespace sheen::core

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-#include "pipeline/undistortion.h"
+#include "core/image/undistortion.h"
 
 #include <opencv2/imgproc.hpp>
 
-namespace sheen::pipeline {
+namespace sheen::core {
 
-Undistortion::Undistortion(const core::CameraModel& camera) {
-  core::CameraModel::Intrinsics straight = camera.intrinsics();
+Undistortion::Undistortion(const CameraModel& camera) {
+  CameraModel::Intrinsics straight = camera.intrinsics();
   straight.distortion = {};
-  straight.lens = core::LensKind::rational;  // a fisheye without coefficients still bends lines
-  camera_ = core::CameraModel(straight);
+  straight.lens = LensKind::rational;  // a fisheye without coefficients still bends lines
+  camera_ = CameraModel(straight);
   const cv::Size size(camera.width_px(), camera.height_px());
   places_ = cv::Mat(size, CV_32FC2, cv::Scalar(-1, -1));
   covered_ = cv::Mat::zeros(size, CV_8UC1);
@@ -34,4 +34,4 @@ cv::Mat Undistortion::image(const cv::Mat& distorted) const {
   return straight;
 }
 
-}  // namespace sheen::pipeline
+}  // namespace sheen::core
