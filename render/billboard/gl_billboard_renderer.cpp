@@ -3,6 +3,7 @@
 #include "render/billboard/billboard_renderer.h"
 #include "render/billboard/draw_frames.h"
 #include "render/billboard/frame_layers.h"
+#include "render/gl/instanced_strips.h"
 #include "render/gl/offscreen_target.h"
 #include "render/gl/program.h"
 #include "render/shaders/shader_text.h"
@@ -229,19 +230,9 @@ void GlBillboardRenderer::draw(gl::OffscreenTarget& target, const core::CameraMo
   layers_.bind();
   rays_.bind();
 
-  // Draw.
-  gl_.Viewport(0, 0, camera.width_px(), camera.height_px());
-  // Lower left: the first row of the image is the first one of what is read back.
-  gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-  for (const GLenum off : {GL_CULL_FACE, GL_BLEND, GL_SCISSOR_TEST}) gl_.Disable(off);
-  gl_.Enable(GL_DEPTH_TEST);
-  gl_.DepthFunc(GL_GREATER);
-  gl_.UseProgram(program_.name());
-  gl_.BindVertexArray(no_attributes_.name());
-  constexpr GLsizei corners = 4;
-  gl_.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, corners, static_cast<GLsizei>(copies_.size()));
-  gl_.BindVertexArray(0);
-  gl_.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+  gl::draw_instanced_strips(gl_, program_.name(), no_attributes_.name(),
+                            {camera.width_px(), camera.height_px()},
+                            static_cast<GLsizei>(copies_.size()));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "render/multi_eigenspace/copies_renderer.h"
 
 #include "core/diagnostics/error.h"
+#include "render/gl/instanced_strips.h"
 #include "render/gl/offscreen_target.h"
 #include "render/gl/program.h"
 #include "render/shaders/shader_text.h"
@@ -192,20 +193,9 @@ void CopiesRenderer::draw_copies(const core::CameraModel& camera) {
   gl_.BindTextureUnit(0, means_.name());
   gl_.BindTextureUnit(1, images_.name());
 
-  gl_.Viewport(0, 0, camera.width_px(), camera.height_px());
-  gl_.ClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-  gl_.Enable(GL_DEPTH_TEST);
-  gl_.DepthFunc(GL_GREATER);
-  gl_.DepthMask(GL_TRUE);
-  gl_.Disable(GL_CULL_FACE);
-  gl_.Disable(GL_BLEND);
-  gl_.Disable(GL_SCISSOR_TEST);
-  gl_.UseProgram(program_.name());
-  gl_.BindVertexArray(no_attributes_.name());
-  constexpr GLsizei corners = 4;
-  gl_.DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, corners, static_cast<GLsizei>(copies_.size()));
-  gl_.BindVertexArray(0);
-  gl_.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+  gl::draw_instanced_strips(gl_, program_.name(), no_attributes_.name(),
+                            {camera.width_px(), camera.height_px()},
+                            static_cast<GLsizei>(copies_.size()));
 }
 
 RenderedView CopiesRenderer::render(const core::CameraModel& camera,

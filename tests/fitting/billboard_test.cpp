@@ -11,12 +11,12 @@
 #include "render/billboard/draw_frames.h"
 #include "render/surface/surface_renderer.h"
 #include "tests/fitting/photographs_for_tests.h"
+#include "tests/render/drawing_time.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 
 namespace sheen::fitting::billboard {
 namespace {
@@ -326,15 +326,6 @@ Billboards baked_knot(Blending blending, double field_deg) {
   return billboards;
 }
 
-/// CPU time of this process, all threads, for drawing what was drawn before.
-double cpu_ms(render::Renderer& renderer, const core::CameraModel& camera,
-              const Eigen::Isometry3d& pose) {
-  constexpr int times = 5;
-  const std::clock_t before = std::clock();
-  for (int i = 0; i < times; ++i) renderer.render(camera, pose);
-  return 1000.0 * static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC / times;
-}
-
 // Both do the same arithmetic in single precision: places in frames differ by some 1e-5 pixels.
 // Colours then differ by rounding. A ray looks up to 16 depths of each of some five frames, at the
 // nearest pixel: with 2e-5 for each it is another one for 2e-3 of the pixels, which shows where
@@ -361,8 +352,8 @@ TEST(Billboard, OpenGlDrawsTheCpusImage) {
       EXPECT_LE(cv::countNonZero(expected.support != drawn.support), 3e-4 * pixels);
       EXPECT_LE(cv::countNonZero(beside.reshape(1) > 1), 3e-4 * pixels);
       if (distance_m > 1) continue;
-      RecordProperty(name + "_cpu_ms", std::to_string(cpu_ms(*cpu, camera, pose)));
-      RecordProperty(name + "_osmesa_ms", std::to_string(cpu_ms(*gl, camera, pose)));
+      RecordProperty(name + "_cpu_ms", std::to_string(tests::drawing_cpu_ms(*cpu, camera, pose)));
+      RecordProperty(name + "_osmesa_ms", std::to_string(tests::drawing_cpu_ms(*gl, camera, pose)));
     }
   }
 }

@@ -10,12 +10,12 @@
 #include "render/views/ray_grid.h"
 #include "render/views/view_cache.h"
 #include "tests/fitting/photographs_for_tests.h"
+#include "tests/render/drawing_time.h"
 
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
 #include <cmath>
-#include <ctime>
 #include <random>
 
 namespace sheen::fitting::depth_quads {
@@ -423,15 +423,6 @@ core::CameraModel bent(const core::CameraModel& camera, int times) {
   return core::CameraModel(in);
 }
 
-/// CPU time of this process, all threads, for drawing what was drawn before.
-double cpu_ms(render::Renderer& renderer, const core::CameraModel& camera,
-              const Eigen::Isometry3d& pose) {
-  constexpr int times = 5;
-  const std::clock_t before = std::clock();
-  for (int i = 0; i < times; ++i) renderer.render(camera, pose);
-  return 1000.0 * static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC / times;
-}
-
 // Both take every pixel's ray to the same quads, OpenGL with corners in single precision: where a
 // quad begins is off by about 2^-22 focal lengths, 2e-4 pixels at 500. Colours of a slope of up to
 // 60 levels a pixel move by .01 and differ by rounding alone. A pixel within 2e-4 of a border may
@@ -455,8 +446,10 @@ TEST(DepthQuads, OpenGlDrawsTheCpusImage) {
       EXPECT_GT(pixels, 6000);
       EXPECT_LE(cv::countNonZero(expected.mask != drawn.mask), 3e-4 * pixels);
       EXPECT_LE(cv::countNonZero(beside.reshape(1) > 1), 3e-4 * pixels);
-      note(blending + "_" + std::to_string(times) + "_cpu_ms", cpu_ms(*cpu, camera, pose));
-      note(blending + "_" + std::to_string(times) + "_osmesa_ms", cpu_ms(*gl, camera, pose));
+      note(blending + "_" + std::to_string(times) + "_cpu_ms",
+           tests::drawing_cpu_ms(*cpu, camera, pose));
+      note(blending + "_" + std::to_string(times) + "_osmesa_ms",
+           tests::drawing_cpu_ms(*gl, camera, pose));
     }
   }
 }
