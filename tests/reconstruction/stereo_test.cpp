@@ -176,7 +176,7 @@ TEST(ProvenCarving, FillsAPitThatTheViewsDoNotShow) {
     carved[i] = std::max(hull[i], into_pit);
   }
   ASSERT_LT(top_at(carved, 0, 0), -0.009F);
-  keep_proven_carving(depths_of_printed_plane(), hull, 2, carved);
+  keep_proven_carving(depths_of(views_of_plane(24, 1), hull), hull, 2, carved);
   for (std::size_t i = 0; i < hull.count(); ++i) ASSERT_EQ(carved[i], hull[i]);
 }
 
