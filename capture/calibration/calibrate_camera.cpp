@@ -21,6 +21,10 @@ constexpr std::size_t kMinViews = 3;
 constexpr double kSurelyNotZero = 3;   // standard deviations
 constexpr double kFarAbove = 3;        // of the median error, for views that are dropped
 constexpr double kAlwaysFinePx = 0.5;  // views this good stay whatever the others do
+// What is kept of a solution's digits. Beyond them they depend on where the solver's memory lies
+// (LAPACK sums by its alignment; 4e-10 px seen), so that two runs would write other files.
+constexpr double kPixelStep = 1e-5;
+constexpr double kDistortionStep = 1e-6;
 
 /// A view as a point of the space in which views should be spread: where the target is, how large,
 /// how it tapers.
@@ -156,6 +160,20 @@ std::optional<LensSolution> solve_rational(const std::vector<TargetView>& views,
   return solution;
 }
 
+double round_to(double value, double step) {
+  return std::round(value / step) * step;
+}
+
+core::CameraModel rounded(const core::CameraModel& camera) {
+  core::CameraModel::Intrinsics intrinsics = camera.intrinsics();
+  for (int i = 0; i < 2; ++i) {
+    intrinsics.focal_px[i] = round_to(intrinsics.focal_px[i], kPixelStep);
+    intrinsics.principal_px[i] = round_to(intrinsics.principal_px[i], kPixelStep);
+  }
+  for (double& term : intrinsics.distortion) term = round_to(term, kDistortionStep);
+  return core::CameraModel(intrinsics);
+}
+
 Calibration::View measure_view(const TargetView& points, const LensSolution& solution,
                                std::size_t i) {
   Calibration::View view;
@@ -213,9 +231,10 @@ TargetView points_within(const Calibration::View& view, double limit_px) {
 std::optional<Calibration> calibrate_once(const std::vector<TargetView>& views,
                                           const ImageSize& size, core::LensKind lens) {
   if (views.size() < kMinViews) return std::nullopt;
-  const auto solution =
+  auto solution =
       lens == core::LensKind::fisheye ? solve_fisheye(views, size) : solve_rational(views, size);
   if (!solution) return std::nullopt;
+  solution->camera = rounded(solution->camera);
 
   Calibration result;
   result.camera = solution->camera;

@@ -17,7 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMostEvents = 2000;
-constexpr std::size_t kSlowCommands = 3;  // the last ones
 
 /// Files of a folder (or one file) by name, "" for what is no file.
 using Tree = std::map<std::string, std::string>;
@@ -84,7 +83,6 @@ const std::vector<WritingCommand>& commands() {
        {"import", "DATA_SET", "--mesh", "SESSION/object.ply", "-o", "OUT/session"},
        {"session"},
        false},
-      // Those that take a minute or more in all (kSlowCommands).
       {"resume",
        {"resume", "STATE", "OTHER", "-o", "OUT/model.glb", "--state", "OUT/fit.state"},
        {"model.glb", "fit.state"}},
@@ -258,11 +256,7 @@ std::string name_of(const ::testing::TestParamInfo<std::size_t>& each) {
   return commands()[each.param].name;
 }
 
-INSTANTIATE_TEST_SUITE_P(EveryCommand, Faults,
-                         ::testing::Range(std::size_t{0}, commands().size() - kSlowCommands),
-                         name_of);
-INSTANTIATE_TEST_SUITE_P(DISABLED_SlowCommand, Faults,
-                         ::testing::Range(commands().size() - kSlowCommands, commands().size()),
+INSTANTIATE_TEST_SUITE_P(EveryCommand, Faults, ::testing::Range(std::size_t{0}, commands().size()),
                          name_of);
 
 }  // namespace
