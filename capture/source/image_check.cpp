@@ -3,6 +3,9 @@
 
 #include "core/diagnostics/error.h"
 
+#include <fmt/format.h>
+
+#include <cstdint>
 #include <string>
 
 namespace sheen::capture {
@@ -12,13 +15,26 @@ std::string text(const ImageSize& size) {
   return std::to_string(size.width_px) + "x" + std::to_string(size.height_px);
 }
 
+/// Images of one lens that were made smaller or larger keep their shape; others were cropped, too.
+std::string remedy_for(const ImageSize& size, const ImageSize& expected) {
+  const auto across = std::int64_t{size.width_px} * expected.height_px;
+  const auto down = std::int64_t{size.height_px} * expected.width_px;
+  if (across != down || expected.width_px <= 0) {
+    return "use the camera file of this recording; the shape differs, so scaling does not do";
+  }
+  return fmt::format(
+      "use the camera file of this recording, or if it was scaled, multiply fx, fy, cx + 0.5 and "
+      "cy + 0.5 in that file by {:.6g}",
+      static_cast<double>(size.width_px) / expected.width_px);
+}
+
 }  // namespace
 
 void check_image_size(const std::filesystem::path& subject, const ImageSize& size,
                       const ImageSize& expected) {
   if (size == expected) return;
   throw core::bad_input(subject, "is " + text(size) + " but the camera file says " + text(expected),
-                        "use the camera file of this recording");
+                        remedy_for(size, expected));
 }
 
 void check_range(const std::filesystem::path& subject, const FrameRange& range,

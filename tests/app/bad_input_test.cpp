@@ -72,6 +72,15 @@ TEST_F(BadInput, CameraOfAnotherImageSize) {
   expect_refused("320x360");
 }
 
+// 640 x 360 images are twice as large in both directions.
+TEST_F(BadInput, CameraOfScaledImagesIsToldTheFactor) {
+  replace("camera.yaml", "image_width: *[0-9]+", "image_width: 320");
+  replace("camera.yaml", "image_height: *[0-9]+", "image_height: 180");
+  replace("camera.yaml", "576[.], 0[.], 3.2319999999999999e[+]02", "288., 0., 161.35");
+  replace("camera.yaml", "5.7715200000000004e[+]02,\\s+1.7740000000000001e[+]02", "288.576, 88.45");
+  expect_refused("scaled, multiply fx, fy, cx + 0.5 and cy + 0.5 in that file by 2");
+}
+
 TEST_F(BadInput, CameraThatIsNoYaml) {
   write_file(session_ / "camera.yaml", "\x01\x02 not yaml {{{");
   expect_refused("camera.yaml");
