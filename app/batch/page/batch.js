@@ -16,6 +16,8 @@
     return element;
   };
 
+  const kMostLines = 5;  // of a card, before it is opened
+
   // Figures as people read them.
   const number = (places, factor = 1, unit = "") => (value) => value === null ? "–"
     : (value * factor).toLocaleString("en", { minimumFractionDigits: places, maximumFractionDigits: places }) + unit;
@@ -97,8 +99,16 @@
       const title = make("h2", session.name + " ", text);
       badge(session, title);
       if (session.message) make("p", `${session.failed_step ? session.failed_step + ": " : ""}${session.message}`, text);
+      // The disc shows every direction; what is more than a few lines is read by whoever opens it.
+      const few = session.again.length > kMostLines ? kMostLines - 1 : session.again.length;
       const list = make("ul", undefined, text);
-      for (const line of session.again) make("li", line, list);
+      for (const line of session.again.slice(0, few)) make("li", line, list);
+      if (few < session.again.length) {
+        const more = make("details", undefined, text);
+        make("summary", `${session.again.length - few} more`, more);
+        const rest = make("ul", undefined, more);
+        for (const line of session.again.slice(few)) make("li", line, rest);
+      }
       links(session, text);
     }
   };
