@@ -24,8 +24,8 @@ constexpr auto kLong = 20s;  // a test that waits as long has failed
 
 /// Short times, so that silence is over soon. A script sends its images as fast as it can: none of
 /// them counts as stale.
-NetworkCameraOptions hurried(const std::string& address) {
-  return {.address = address, .answer_s = 0.5, .silence_s = 0.3, .reconnect_s = 1, .stale_s = 0};
+NetworkCameraOptions hurried(const std::string& address, double answer_s = 3) {
+  return {.address = address, .answer_s = answer_s, .silence_s = 1, .reconnect_s = 1, .stale_s = 0};
 }
 
 void send_images(HttpConnection& client, int first, int count, bool with_length = true) {
@@ -165,12 +165,12 @@ TEST(NetworkCamera, AStallIsASilenceAfterWhichItAsksAgain) {
 
 TEST(NetworkCamera, AServerThatNeverAnswersIsToldInTime) {
   ScriptedHttp silent({[](HttpConnection& client) { client.wait_for_end(); }});
-  has(refusal(hurried(silent.address("me:secret"))), "gives no answer");
+  has(refusal(hurried(silent.address("me:secret"), 0.5)), "gives no answer");
   ScriptedHttp without_images({[](HttpConnection& client) {
     client.begin_images();
     client.wait_for_end();
   }});
-  const std::string what = refusal(hurried(without_images.address()));
+  const std::string what = refusal(hurried(without_images.address(), 0.5));
   EXPECT_TRUE(what.find("no answer") != std::string::npos ||
               what.find("no more images") != std::string::npos)
       << what;
