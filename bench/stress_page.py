@@ -52,7 +52,7 @@ th, td { padding-inline: .4em; }
 SCRIPT = """
 "use strict";
 const rows = JSON.parse(document.getElementById("data").textContent);
-const colours = {"sparse": "#1e8a3c", "paper-quadtree": "#c0392b", "sh3": "#d9770b", "mean": "#7f7f7f"};
+const colours = {"detail": "#2563c9", "sparse": "#1e8a3c", "paper-quadtree": "#c0392b", "sh3": "#d9770b", "mean": "#7f7f7f"};
 const names = Object.keys(rows.find((row) => !row.refusal).psnr_db);
 const base = rows.find((row) => row.kind === "none") || null;
 const kinds = [...new Set(rows.map((row) => row.kind))].filter((kind) => kind !== "none");

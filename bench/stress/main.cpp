@@ -17,14 +17,17 @@ using namespace sheen::evaluation;
 int main(int argc, char** argv) {
   std::vector<std::string> only;
   std::filesystem::path json;
+  StressOptions stress;
   const auto add_options = [&](CLI::App& app) {
     app.add_option("--only", only, "Kinds of damage, by name; all when not given");
     app.add_option("--json", json, "File for all figures, notes and refusals");
+    app.add_option("--frames", stress.frames, "Images of the undamaged recording, on the same walk")
+        ->check(CLI::Range(5, 2000))
+        ->capture_default_str();
   };
   return run_program(
       argc, argv, "Where whole sessions fail, and whether the program says so",
       [&](const ProgramOptions& options, const Progress& progress) {
-        StressOptions stress;
         stress.seed = static_cast<std::uint32_t>(options.seed);
         if (options.quick) {
           stress.vertices = 500;

@@ -88,10 +88,11 @@ std::vector<double> read_stamps(const std::filesystem::path& path) {
   std::size_t begin = stamps_heading().size();
   while (begin < text.size()) {
     const std::size_t end = text.find('\n', begin);
-    // What a crash leaves: a line without an end, or zeros where the disk has not got it.
-    if (end == std::string::npos || text[begin] == '\0') break;
-    const auto time_s =
-        parse_line(std::string_view(text).substr(begin, end - begin), times_s.size());
+    if (end == std::string::npos) break;
+    const std::string_view line = std::string_view(text).substr(begin, end - begin);
+    // What a crash leaves: a line without an end, or zeros where a block has not come to the disk.
+    if (line.find('\0') != std::string_view::npos) break;
+    const auto time_s = parse_line(line, times_s.size());
     if (!time_s) throw fail("line " + std::to_string(times_s.size() + 2) + " is no time stamp");
     if (!times_s.empty() && *time_s < times_s.back()) {
       throw fail("line " + std::to_string(times_s.size() + 2) + " goes back in time");

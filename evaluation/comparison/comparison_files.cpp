@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "evaluation/comparison/comparison_files.h"
 
-#include "core/diagnostics/error.h"
+#include "core/files/staged_output.h"
 #include "core/files/write_file.h"
 #include "core/text/script_text.h"
 #include "evaluation/comparison/page_text.h"
@@ -55,13 +55,9 @@ void move_into_place(const fs::path& staging, const fs::path& folder, Comparison
   std::sort(staged.begin(), staged.end());
   for (const fs::path& path : staged) {
     const fs::path final_path = folder / path.filename();
-    std::error_code failure;
-    fs::rename(path, final_path, failure);
-    if (failure) {
-      throw core::Error(core::Error::Kind::run_failed, final_path,
-                        "cannot be moved into place (" + failure.message() + ")",
-                        "check free space and permissions of its folder");
-    }
+    core::StagedOutput output(final_path);  // charts are another program's, so not flushed yet
+    fs::rename(path, output.path());
+    output.commit();
     files.written.push_back(final_path);
   }
 }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
+#include <optional>
 
 namespace sheen::evaluation {
 namespace {
@@ -132,6 +133,18 @@ void change_first_radial_term(StressRecording& recording, double change) {
   recording.camera = core::CameraModel(intrinsics);
 }
 
+void change_focal_length(StressRecording& recording, double percent) {
+  auto intrinsics = recording.camera.intrinsics();
+  intrinsics.focal_px *= 1 + percent / 100;
+  recording.camera = core::CameraModel(intrinsics);
+}
+
+void shift_principal_point(StressRecording& recording, double px) {
+  auto intrinsics = recording.camera.intrinsics();
+  intrinsics.principal_px.x() += px;
+  recording.camera = core::CameraModel(intrinsics);
+}
+
 /// The file says that the board is a bowl, the print is flat; relative to each other it is the
 /// same.
 void curl_board(StressRecording& recording, double rise_m) {
@@ -151,6 +164,45 @@ void keep_tags(StressRecording& recording, double count) {
       std::next(tags.begin(), std::min<std::ptrdiff_t>(static_cast<std::ptrdiff_t>(count),
                                                        static_cast<std::ptrdiff_t>(tags.size()))),
       tags.end());
+}
+
+/// The tag's square in an image, half as large again; empty where the object stands before it or
+/// the camera does not see it.
+std::vector<cv::Point> around_tag(const StressRecording& recording, std::size_t frame,
+                                  const capture::Board::Tag& tag) {
+  const Eigen::Isometry3d camera_from_board = recording.board_from_camera[frame].inverse();
+  const auto pixel = [&](const Eigen::Vector3d& in_board) -> std::optional<cv::Point2f> {
+    const auto seen = recording.camera.project(camera_from_board * in_board);
+    if (!seen) return std::nullopt;
+    return cv::Point2f(static_cast<float>(seen->x()), static_cast<float>(seen->y()));
+  };
+  std::vector<cv::Point> square;
+  for (const Eigen::Vector3d& corner : tag.corners_in_board()) {
+    const Eigen::Vector3d middle = tag.board_from_tag.translation();
+    const auto at = pixel(middle + 1.5 * (corner - middle));
+    if (!at) return {};
+    square.emplace_back(cvRound(at->x), cvRound(at->y));
+  }
+  const bool is_behind_object =
+      std::ranges::any_of(recording.mesh.positions, [&](const Eigen::Vector3f& position) {
+        const auto at = pixel(recording.board_from_object * position.cast<double>());
+        return at && cv::pointPolygonTest(square, *at, false) >= 0;
+      });
+  return is_behind_object ? std::vector<cv::Point>{} : square;
+}
+
+/// Grey paper on all tags but the first `count` in every second frame; none over the object.
+void cover_tags(StressRecording& recording, double count) {
+  for (std::size_t i = 0; i < recording.light.size(); i += 2) {
+    cv::Mat light = recording.light[i].clone();
+    double left = count;
+    for (const auto& [id, tag] : recording.board.tags) {
+      if (left-- > 0) continue;
+      const auto square = around_tag(recording, i, tag);
+      if (!square.empty()) cv::fillConvexPoly(light, square, {0.4, 0.4, 0.4});
+    }
+    recording.light[i] = light;
+  }
 }
 
 /// An ellipse of skin across the object's middle in every second frame; `share` of the image's
@@ -242,8 +294,11 @@ std::vector<StressKind> stress_kinds() {
       {"rolling-shutter", "px over the image", {2, 5, 10, 20}, roll_shutter},
       {"defocus", "px sigma", {1, 2, 4}, defocus},
       {"lens", "error of k1", {0.03, 0.1, 0.3}, change_first_radial_term},
+      {"focal-length", "%", {1, 3, 10}, change_focal_length},
+      {"principal-point", "px", {2, 6, 20}, shift_principal_point},
       {"curled-board", "m rise at the edge", {0.002, 0.005, 0.015}, curl_board},
       {"tags-left", "tags", {8, 3, 1}, keep_tags},
+      {"tags-covered", "tags left in every second frame", {8, 3, 1}, cover_tags},
       {"hand", "image heights", {0.1, 0.2, 0.4}, hold_hand_in_front},
       {"nudge", "m", {0.001, 0.003, 0.01}, nudge_object},
       {"mesh-scale", "%", {1, 3, 10}, scale_mesh},

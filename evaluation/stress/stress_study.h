@@ -15,9 +15,9 @@
 
 namespace sheen::evaluation {
 
-/// Candidates (comparison/candidates.h) that every damaged session is fitted with: the default, the
-/// paper's quadtree, harmonics and what all of them should beat.
-inline constexpr std::array kStressCandidates{"sparse", "paper-quadtree", "sh3", "mean"};
+/// Candidates (comparison/candidates.h) that every damaged session is fitted with: the default, its
+/// patches without a texture, the paper's quadtree, harmonics and what all of them should beat.
+inline constexpr std::array kStressCandidates{"detail", "sparse", "paper-quadtree", "sh3", "mean"};
 
 /// A pose that puts the object's vertices farther off than this, RMS in the image, is wrong.
 inline constexpr double kWrongPose_px = 2;

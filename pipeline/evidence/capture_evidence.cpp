@@ -16,10 +16,9 @@ namespace {
 constexpr std::size_t kMostGrains = 16, kGrainSpacing = 4;
 constexpr int kLeastGrainStep_px = 3, kGrainPixels = 6000;
 // Chosen on bench/stress with seed 1 and the recordings named in docs/stability-sessions.md.
-constexpr double kGrainy = 20;   // grey levels: as much as shades differ by
-constexpr double kUnclear = 10;  // above it outlines and colours tell nothing sure
+constexpr double kGrainy = 10;  // grey levels, above which outlines and colours tell nothing sure
 constexpr double kWidestGap_deg = 120;
-constexpr int kFewFrames = 8;
+constexpr int kFewFrames = 12;
 
 void append(std::vector<Finding> more, std::vector<Finding>& findings) {
   for (Finding& finding : more) findings.push_back(std::move(finding));
@@ -98,7 +97,7 @@ std::vector<Finding> CaptureEvidence::faults() const {
   const bool has_wrong_poses = corners_ && !corners_->findings().empty();
   const LightEvidence::Verdict light = light_.verdict();
   append(LightEvidence::drifts(light), faults);
-  if (has_wrong_poses || noise > kUnclear) return faults;
+  if (has_wrong_poses || noise > kGrainy) return faults;
 
   // Outlines and colours are off, too, where poses are: the cause has been named.
   const std::vector<Finding> misplaced = outline_.findings();

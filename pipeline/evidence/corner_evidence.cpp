@@ -20,11 +20,11 @@ constexpr std::size_t kFewestCorners = 12;
 constexpr int kFewestNumbers = 600;  // below it a pattern of three unknowns fits noise
 // Chosen on bench/stress with seed 1 and the recordings named in docs/stability-sessions.md: what a
 // pattern must explain, RMS of the corners; less does no harm that is seen.
-constexpr double kLens_px = 0.5, kBend_px = 0.3, kShutter_px = 0.6;
+constexpr double kLens_px = 0.5, kBend_px = 0.3, kShutter_px = 0.3, kPrincipal_px = 0.5;
 constexpr double kPatternShare = 0.35;
 
 constexpr double kStep = 1e-4;  // of a numerical derivative
-constexpr int kLens = 0, kBend = 3, kShutter = 6;
+constexpr int kCameraUnknowns = 5;
 
 cv::Mat grey_of(const capture::Frame& frame) {
   if (!frame.grey.empty()) return frame.grey;
@@ -38,6 +38,8 @@ core::CameraModel with_change(const core::CameraModel& camera, int unknown) {
   if (unknown == 0) changed.focal_px *= 1 + kStep;
   if (unknown == 1) changed.distortion[0] += kStep;
   if (unknown == 2) changed.distortion[1] += kStep;
+  if (unknown == 3) changed.principal_px.x() += kStep;
+  if (unknown == 4) changed.principal_px.y() += kStep;
   return core::CameraModel(changed);
 }
 
@@ -46,7 +48,8 @@ core::CameraModel with_change(const core::CameraModel& camera, int unknown) {
 CornerEvidence::CornerEvidence(const capture::Board& board, const core::CameraModel& camera)
     : board_(board),
       camera_(camera),
-      changed_{with_change(camera, 0), with_change(camera, 1), with_change(camera, 2)},
+      changed_{with_change(camera, 0), with_change(camera, 1), with_change(camera, 2),
+               with_change(camera, 3), with_change(camera, 4)},
       middle_(Eigen::Vector3d::Zero()),
       tracker_(board, camera, capture::BoardTagFinder(board, camera).family()),
       views_(kMostCornerViews, kCornerSpacing) {
@@ -89,9 +92,9 @@ void CornerEvidence::look_at(const capture::Frame& frame,
       by_pose.block<2, 1>(row, axis) = seen->pixel_by_point * unit.cross(in_camera);
       by_pose.block<2, 1>(row, 3 + axis) = seen->pixel_by_point * unit;
     }
-    for (int unknown = 0; unknown < 3; ++unknown) {
+    for (int unknown = 0; unknown < kCameraUnknowns; ++unknown) {
       const auto moved = changed_[static_cast<std::size_t>(unknown)].project(in_camera);
-      if (moved) by_fault.block<2, 1>(row, kLens + unknown) = (*moved - seen->pixel) / kStep;
+      if (moved) by_fault.block<2, 1>(row, unknown) = (*moved - seen->pixel) / kStep;
     }
     const Eigen::Vector3d on_board = (in_board - middle_) / extent_m_;
     const Eigen::Vector2d by_rise =
@@ -147,7 +150,9 @@ CornerEvidence::Pattern CornerEvidence::fit(int first, int count) const {
 
 std::vector<Finding> CornerEvidence::findings() const {
   const Pattern lens = fit(kLens, 3), bend = fit(kBend, 3), shutter = fit(kShutter, 1);
-  const double most_px = std::max({lens.effect_px, bend.effect_px, shutter.effect_px});
+  const Pattern principal = fit(kPrincipal, 2);
+  const double most_px =
+      std::max({lens.effect_px, bend.effect_px, shutter.effect_px, principal.effect_px});
   const auto is_seen = [&](const Pattern& pattern, double least_px) {
     return pattern.effect_px >= most_px && pattern.effect_px > least_px &&
            pattern.share > kPatternShare;
@@ -162,6 +167,14 @@ std::vector<Finding> CornerEvidence::findings() const {
                          "other distortion explain {}; calibrate this camera at this focus and "
                          "image size (sheen calibrate)",
                          100 * lens.solution[kLens], explained(lens))}};
+  }
+  if (is_seen(principal, kPrincipal_px)) {
+    return {{"lens",
+             fmt::format("the lens is not that of the camera file: a principal point {:+.0f} px "
+                         "to the right and {:+.0f} px down explains {}; calibrate this camera at "
+                         "this image size, uncropped (sheen calibrate)",
+                         principal.solution[kPrincipal], principal.solution[kPrincipal + 1],
+                         explained(principal))}};
   }
   if (is_seen(bend, kBend_px)) {
     return {

@@ -18,7 +18,8 @@
 namespace sheen::pipeline {
 
 /// What is left of the tags' corners when every frame has its best pose, against the patterns that
-/// known faults leave there: another lens, a bent board, rows that are read one after the other.
+/// known faults leave there: another lens, a principal point
+/// elsewhere, a bent board, rows that are read one after the other.
 /// Poses take up most of such a fault; the rest of it, projected off the six freedoms of each pose,
 /// is fitted by one small linear least squares over all frames per fault.
 class CornerEvidence {
@@ -31,7 +32,9 @@ class CornerEvidence {
 
   [[nodiscard]] std::vector<Finding> findings() const;
 
-  static constexpr int kUnknowns = 7;  ///< lens 3, bend 3, shutter 1
+  /// Where the unknowns of each fault begin: focal length and two terms of distortion, principal
+  /// point, bend (3), shutter (1).
+  static constexpr int kLens = 0, kPrincipal = 3, kBend = 5, kShutter = 8, kUnknowns = 9;
   using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns>;
   using Vector = Eigen::Matrix<double, kUnknowns, 1>;
 
@@ -54,8 +57,9 @@ class CornerEvidence {
  private:
   capture::Board board_;
   core::CameraModel camera_;
-  std::array<core::CameraModel, 3> changed_;  ///< focal length, first two terms of distortion
-  double extent_m_ = 0;                       ///< half of the board's longer side
+  /// Focal length, first two terms of distortion, principal point right and down.
+  std::array<core::CameraModel, 5> changed_;
+  double extent_m_ = 0;  ///< half of the board's longer side
   Eigen::Vector3d middle_;
   capture::TagTracker tracker_;
   Thinned<View> views_;

@@ -3,6 +3,7 @@
 #include "capture/source/avi_reader.h"
 #include "capture/source/video_source.h"
 #include "tests/capture/expect_bad_input.h"
+#include "tests/capture/power_cut.h"
 #include "tests/capture/recording_frames.h"
 
 #include <gtest/gtest.h>
@@ -141,6 +142,35 @@ TEST(Avi, CutAnywhereGivesTheImagesBeforeTheCut) {
     for (std::size_t k = 0; k < complete; ++k) EXPECT_EQ(found[k], expected[k]);
     // The one that was cut may be filled up by what follows; the decoder refuses it.
     EXPECT_LE(found.size(), complete + 1) << "cut at " << length;
+  }
+}
+
+// What was flushed is there bit for bit, whatever of later writes came to the disk: those of more
+// images, of a segment's end and of closing, which changes the beginnings of file and segments,
+// too.
+TEST_P(AviOfSegments, LosesNothingFlushedToAPowerCut) {
+  const TemporaryFolder scratch;
+  const auto path = scratch.path() / "v.avi";
+  const auto sent = images(40);
+  AviWriter writer(path, kRecordedSize, 30, GetParam());
+  std::vector<std::string> after;  // each image
+  for (const Bytes& image : sent) {
+    ASSERT_EQ(writer.append(image), 0);
+    after.push_back(tests::read_file(path));
+  }
+  ASSERT_EQ(writer.close(), 0);
+  const std::string closed = tests::read_file(path);
+  std::mt19937 random(7);
+  for (int attempt = 0; attempt < 200; ++attempt) {
+    const std::size_t flushed = 1 + random() % (sent.size() - 1);  // images
+    const std::size_t last = flushed + random() % (sent.size() - flushed);
+    const bool is_closing = attempt % 2 == 0;
+    const auto cut = scratch.write(
+        "cut.avi", after_power_cut(after[flushed - 1], is_closing ? closed : after[last], random));
+    const auto left = read_all(cut);
+    ASSERT_GE(left.size(), flushed) << attempt;
+    EXPECT_TRUE(std::equal(sent.begin(), sent.begin() + static_cast<long>(flushed), left.begin()))
+        << "attempt " << attempt;
   }
 }
 

@@ -5,6 +5,7 @@
 #include "capture/source/ffmpeg_owners.h"
 #include "capture/source/stream_clock.h"
 #include "capture/source/video_source.h"
+#include "tests/capture/power_cut.h"
 #include "tests/capture/recording_frames.h"
 #include "tests/capture/video_file.h"
 #include "tests/support/full_disk.h"
@@ -110,19 +111,6 @@ TEST(MatroskaRecording, OpensWhereverItIsCut) {
   }
   ASSERT_EQ(recording.close(), 0);
   EXPECT_EQ(count_frames(path), kStored);
-}
-
-/// What a power cut leaves of a file that was flushed when it held `flushed` and was written on to
-/// `written`: each of its blocks is as it was flushed (beyond that: zeros) or as it was written
-/// last, whichever the disk had come to, and its end may lie anywhere between.
-std::string after_power_cut(const std::string& flushed, const std::string& written,
-                            std::mt19937& random) {
-  constexpr std::size_t block = 512;
-  std::string left = flushed + std::string(written.size() - flushed.size(), '\0');
-  for (std::size_t at = 0; at < left.size(); at += block) {
-    if (random() % 2 == 0) left.replace(at, block, written, at, block);
-  }
-  return left.substr(0, flushed.size() + random() % (written.size() - flushed.size() + 1));
 }
 
 // What was flushed is there, whatever of later writes came to the disk: those of more pictures, and

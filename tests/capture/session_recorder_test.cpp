@@ -7,6 +7,7 @@
 #include "capture/session/session.h"
 #include "capture/source/avi_reader.h"
 #include "tests/capture/expect_bad_input.h"
+#include "tests/capture/power_cut.h"
 #include "tests/capture/recording_frames.h"
 #include "tests/support/full_disk.h"
 
@@ -407,6 +408,29 @@ TEST(FrameStamps, RefusesWhatIsNoSuchFile) {
   const auto path = scratch.write(
       "frames.csv", heading + stamp_line(0, 0, 4) + stamp_line(1, 3'600'033'312, 5) + "2,3");
   EXPECT_EQ(read_stamps(path), (std::vector<double>{0, stamp_seconds(3'600'033'312)}));
+}
+
+// Blocks of later lines may have come to the disk and earlier ones not: what was flushed counts.
+TEST(FrameStamps, LoseNothingFlushedToAPowerCut) {
+  const TemporaryFolder scratch;
+  std::string text = stamps_heading();
+  std::vector<std::size_t> ends;
+  std::vector<double> times_s;
+  for (int i = 0; i < 300; ++i) {
+    const std::int64_t time_us = 33'333LL * i;
+    text += stamp_line(i, time_us, static_cast<std::uint32_t>(i));
+    ends.push_back(text.size());
+    times_s.push_back(stamp_seconds(time_us));
+  }
+  std::mt19937 random(3);
+  for (int attempt = 0; attempt < 200; ++attempt) {
+    const std::size_t flushed = 1 + random() % (ends.size() - 1);  // lines
+    const auto path = scratch.write(
+        "frames.csv", after_power_cut(text.substr(0, ends[flushed - 1]), text, random));
+    const auto left = read_stamps(path);
+    ASSERT_GE(left.size(), flushed) << attempt;
+    EXPECT_TRUE(std::equal(left.begin(), left.end(), times_s.begin())) << attempt;
+  }
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A camera is recorded while the disk fills up, or the program is killed, at every write: what is
-// left is nothing, or a session that opens and holds images bit for bit, one after the other as
-// they came, as many as were written (docs/trust.md).
+// A camera is recorded while the disk fills up, or the program is killed, at every write, or the
+// power fails after every move: what is left is nothing, or a session that opens and holds images
+// bit for bit, one after the other as they came, as many as were written (docs/trust.md).
 #include "capture/session/session.h"
 #include "capture/source/avi_reader.h"
 #include "core/diagnostics/error.h"
@@ -86,7 +86,7 @@ class CaptureFaults : public ::testing::Test {
 };
 
 TEST_F(CaptureFaults, KeepWhatWasWrittenBefore) {
-  for (const std::string kind : {"full", "kill"}) {
+  for (const std::string kind : {"full", "kill", "power"}) {
     std::optional<std::size_t> before;
     int n = 1;
     for (; n < kMostEvents; ++n) {
