@@ -13,21 +13,24 @@ struct AVFrame;
 
 namespace sheen::capture {
 
-/// What a video's container says.
+/// What a video's container says, and its pictures so far.
 struct VideoFacts {
   ImageSize size;             ///< of the stored pixels; 0 where only the images tell
   std::optional<double> fps;  ///< usual frame rate
   std::optional<int> frames;  ///< that a player shows: those hidden by an edit list do not count
   Orientation orientation;
   bool has_own_times = false;  ///< frames carry times of their own, not only a rate
+  bool is_interlaced = false;  ///< pictures so far were two fields, taken one after the other
 };
 
 /// Pictures of a video file by FFmpeg, as they are stored: neither turned nor converted. Only local
 /// files are opened, whatever a file refers to.
 class VideoDecoder {
  public:
-  /// Throws core::Error (bad_input) for what cannot be decoded.
-  explicit VideoDecoder(const std::filesystem::path& path);
+  /// Of several video streams the only one of the `wanted` size, else FFmpeg's choice. Throws
+  /// core::Error (bad_input) for what cannot be decoded.
+  explicit VideoDecoder(const std::filesystem::path& path,
+                        const std::optional<ImageSize>& wanted = std::nullopt);
   /// Of a video that still grows, called `name` in messages; `bytes` is borrowed. Waits until there
   /// is enough to know the video. What `bytes` throws is thrown here and by `next`.
   VideoDecoder(const std::filesystem::path& name, VideoBytes& bytes);

@@ -57,6 +57,11 @@ class VideoSource : public FrameSource {
   [[nodiscard]] SourceReport report() const override {
     SourceReport report{decoder_.damaged(), colour_.notes()};
     if (!turn_.note.empty()) report.notes.push_back(turn_.note);
+    if (decoder_.facts().is_interlaced) {
+      report.notes.emplace_back(
+          "is interlaced: odd and even lines were taken at different times; deinterlace it "
+          "(ffmpeg -vf yadif), or record progressively");
+    }
     if (auto disagreement = rate_.disagreement()) report.notes.push_back(*disagreement);
     for (std::string& note : report.notes) note = path_.string() + ": " + note;
     return report;
@@ -143,7 +148,8 @@ std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, const
                                         const FrameRange& range, std::optional<double> fps) {
   check_is_file(path);
   if (auto source = open_motion_jpeg(path, size, range, fps)) return source;
-  return read_ahead(std::make_unique<VideoSource>(path, VideoDecoder(path), size, range, fps));
+  return read_ahead(
+      std::make_unique<VideoSource>(path, VideoDecoder(path, size), size, range, fps));
 }
 
 std::unique_ptr<FrameSource> open_growing_video(const std::filesystem::path& name,
