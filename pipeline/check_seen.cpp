@@ -87,10 +87,13 @@ void refuse_other_stamps(const capture::Session& session, const FrameStatistics&
   const auto& subject = cause.suspect == capture::PoseSuspect::board    ? *session.board
                         : cause.suspect == capture::PoseSuspect::camera ? camera
                                                                         : session.folder;
+  // What is known of the recording itself, such as interlaced images, may be the cause.
+  const auto notes = source->report().notes;
+  const std::string doubt = cause.is_sure || notes.empty() ? "" : notes.front() + "; ";
   throw core::bad_input(subject,
                         fmt::format("{}; none of {} frames got a pose ({})", cause.fault,
                                     frames.frames_read, reasons_text(frames)),
-                        cause.remedy);
+                        doubt + cause.remedy);
 }
 
 /// Whether the poses of a file are of another convention: the file is at fault then, not the mesh.
@@ -190,9 +193,8 @@ std::vector<std::string> doubts_of_stamps(const capture::Session& session,
   const capture::Trajectory poses = capture::read_trajectory(*session.poses);
   const capture::FrameSpan span = span_of(frames);
   std::vector<std::string> doubts;
-  for (const auto& doubt :
-       {capture::miscounting_stamps(poses, span, first_image_number(session)),
-        capture::stamps_outside(poses, span)}) {
+  for (const auto& doubt : {capture::miscounting_stamps(poses, span, first_image_number(session)),
+                            capture::stamps_outside(poses, span)}) {
     if (!doubt) continue;
     doubts.push_back(
         fmt::format("{}: {}; {}", session.poses->string(), doubt->fault, doubt->remedy));

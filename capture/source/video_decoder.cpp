@@ -29,8 +29,7 @@ constexpr std::size_t kMostPending = 256;  // packets whose picture is not out y
 constexpr int kMostFaults = 1000;  // in a row, without a packet: the decoder has lost itself
 
 core::Error undecodable(const std::filesystem::path& path) {
-  return core::bad_input(path, "cannot be decoded as a video",
-                         "check that it is one and complete");
+  return core::bad_input(path, "cannot be decoded as a video", "check that it is one and complete");
 }
 
 /// The bytes of a growing video, as FFmpeg reads them; nothing may be thrown through FFmpeg.
@@ -366,7 +365,6 @@ bool VideoDecoder::Impl::decode() {
         continue;
       }
       fill_in_colours();
-      facts.is_interlaced |= frame->interlaced_frame != 0;
       return true;
     }
     if (status == AVERROR(EAGAIN)) {

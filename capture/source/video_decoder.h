@@ -13,14 +13,13 @@ struct AVFrame;
 
 namespace sheen::capture {
 
-/// What a video's container says, and its pictures so far.
+/// What a video's container says.
 struct VideoFacts {
   ImageSize size;             ///< of the stored pixels; 0 where only the images tell
   std::optional<double> fps;  ///< usual frame rate
   std::optional<int> frames;  ///< that a player shows: those hidden by an edit list do not count
   Orientation orientation;
   bool has_own_times = false;  ///< frames carry times of their own, not only a rate
-  bool is_interlaced = false;  ///< pictures so far were two fields, taken one after the other
 };
 
 /// Pictures of a video file by FFmpeg, as they are stored: neither turned nor converted. Only local

@@ -57,11 +57,6 @@ class VideoSource : public FrameSource {
   [[nodiscard]] SourceReport report() const override {
     SourceReport report{decoder_.damaged(), colour_.notes()};
     if (!turn_.note.empty()) report.notes.push_back(turn_.note);
-    if (decoder_.facts().is_interlaced) {
-      report.notes.emplace_back(
-          "is interlaced: odd and even lines were taken at different times; deinterlace it "
-          "(ffmpeg -vf yadif), or record progressively");
-    }
     if (auto disagreement = rate_.disagreement()) report.notes.push_back(*disagreement);
     for (std::string& note : report.notes) note = path_.string() + ": " + note;
     return report;
