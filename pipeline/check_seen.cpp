@@ -4,6 +4,7 @@
 #include "capture/pose/board_diagnosis.h"
 #include "capture/pose/pose_convention.h"
 #include "capture/pose/stamp_check.h"
+#include "capture/source/image_folder_source.h"
 #include "core/diagnostics/error.h"
 #include "pipeline/session_parts.h"
 
@@ -86,10 +87,13 @@ void refuse_other_stamps(const capture::Session& session, const FrameStatistics&
   const auto& subject = cause.suspect == capture::PoseSuspect::board    ? *session.board
                         : cause.suspect == capture::PoseSuspect::camera ? camera
                                                                         : session.folder;
+  // What is known of the recording itself, such as interlaced images, may be the cause.
+  const auto notes = source->report().notes;
+  const std::string doubt = cause.is_sure || notes.empty() ? "" : notes.front() + "; ";
   throw core::bad_input(subject,
                         fmt::format("{}; none of {} frames got a pose ({})", cause.fault,
                                     frames.frames_read, reasons_text(frames)),
-                        cause.remedy);
+                        doubt + cause.remedy);
 }
 
 /// Whether the poses of a file are of another convention: the file is at fault then, not the mesh.
@@ -101,6 +105,12 @@ void refuse_other_convention(const capture::Session& session, const FrameStatist
   if (!convention) return;
   throw core::bad_input(*session.poses, "shows the object in few frames; " + convention->fault,
                         convention->remedy);
+}
+
+/// Poses come from a file, and all of the recording was asked for.
+bool has_stamps_for_all(const capture::Session& session, const FrameChoice& choice) {
+  return takes_poses_from_file(session, choice.pose_source) && session.poses && choice.start == 0 &&
+         !choice.end;
 }
 
 /// Why the vertices of the mesh gave no sample, by the reason that most of them have.
@@ -160,13 +170,36 @@ void check_something_was_seen(const capture::Session& session, const FrameChoice
 
 void check_stamps(const capture::Session& session, const FrameChoice& choice,
                   std::optional<int> frame_count) {
-  if (!takes_poses_from_file(session, choice.pose_source) || !session.poses || !frame_count ||
-      choice.start != 0 || choice.end) {
-    return;
-  }
+  if (!has_stamps_for_all(session, choice) || !frame_count) return;
   const auto fault =
       capture::shifted_stamps(capture::read_trajectory(*session.poses), *frame_count);
   if (fault) throw core::bad_input(*session.poses, fault->fault, fault->remedy);
+}
+
+namespace {
+
+/// Number in the name of the recording's first image; 0 for a video.
+int first_image_number(const capture::Session& session) {
+  const auto name = capture::NumberedName::parse(session.image_pattern.value_or(""));
+  return name ? capture::find_images(session.folder, *name).first : 0;
+}
+
+}  // namespace
+
+std::vector<std::string> doubts_of_stamps(const capture::Session& session,
+                                          const FrameChoice& choice,
+                                          const FrameStatistics& frames) {
+  if (!has_stamps_for_all(session, choice)) return {};
+  const capture::Trajectory poses = capture::read_trajectory(*session.poses);
+  const capture::FrameSpan span = span_of(frames);
+  std::vector<std::string> doubts;
+  for (const auto& doubt : {capture::miscounting_stamps(poses, span, first_image_number(session)),
+                            capture::stamps_outside(poses, span)}) {
+    if (!doubt) continue;
+    doubts.push_back(
+        fmt::format("{}: {}; {}", session.poses->string(), doubt->fault, doubt->remedy));
+  }
+  return doubts;
 }
 
 }  // namespace sheen::pipeline

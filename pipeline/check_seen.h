@@ -24,4 +24,8 @@ void check_something_was_posed(const capture::Session& session, const FrameChoic
 void check_stamps(const capture::Session& session, const FrameChoice& choice,
                   std::optional<int> frame_count);
 
+/// Where they may name the wrong frames, now that all have been read: one line each.
+std::vector<std::string> doubts_of_stamps(const capture::Session& session,
+                                          const FrameChoice& choice, const FrameStatistics& frames);
+
 }  // namespace sheen::pipeline

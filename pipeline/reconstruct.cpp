@@ -297,6 +297,9 @@ void Reconstruction::run(ProgressSink& sink, FrameListener* listener) {
   // A share of the patches may lie underneath.
   const bool seen = impl_->fitter->statistics().samples > 0 || !impl_->options.share.is_whole();
   check_something_was_seen(impl_->session, impl_->options.frames, frames, seen, impl_->scene);
+  for (const std::string& doubt : doubts_of_stamps(impl_->session, impl_->options.frames, frames)) {
+    sink.note(doubt);
+  }
   impl_->tell_new(impl_->evidence->findings(), sink);
   impl_->finish();
 }

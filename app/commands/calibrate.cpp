@@ -129,11 +129,9 @@ Candidates find_candidates(const CalibrateOptions& options, capture::TargetFinde
 /// Calibrates, measures the points again through the lens that was found, calibrates again.
 std::optional<capture::Calibration> calibrate(const CalibrateOptions& options,
                                               const capture::TargetFinder& finder,
-                                              const Candidates& candidates) {
+                                              const Candidates& candidates, core::LensKind lens) {
   auto views = capture::choose_spread_views(candidates.views, candidates.size,
                                             static_cast<std::size_t>(options.views));
-  const core::LensKind lens =
-      options.is_fisheye ? core::LensKind::fisheye : core::LensKind::rational;
   const auto first = capture::calibrate_camera(views, candidates.size, lens);
   if (!first) return std::nullopt;
   for (capture::TargetView& view : views) {
@@ -227,6 +225,21 @@ void diagnose_board(const CalibrateOptions& options, const Candidates& candidate
       cause.remedy);
 }
 
+core::LensKind other_kind(core::LensKind lens) {
+  return lens == core::LensKind::fisheye ? core::LensKind::rational : core::LensKind::fisheye;
+}
+
+/// Refuses the kind of lens that was asked for where the other one explains the images far better.
+void judge_lens(const CalibrateOptions& options, core::LensKind lens,
+                const std::optional<capture::Calibration>& found,
+                const std::optional<capture::Calibration>& other, const CommandContext& context) {
+  const auto doubt = capture::doubt_lens(lens, found, other, {});
+  if (!doubt) return;
+  if (doubt->is_sure) throw core::bad_input(shown_source(options), doubt->fault, doubt->remedy);
+  context.note(
+      fmt::format("note: {}: {}; {}", shown_source(options).string(), doubt->fault, doubt->remedy));
+}
+
 [[noreturn]] void refuse(const CalibrateOptions& options, const Candidates& candidates,
                          const std::string& faults) {
   diagnose_board(options, candidates);
@@ -239,7 +252,11 @@ void run_calibrate(const CalibrateOptions& options, const CommandContext& contex
   context.check_outputs({options.output, options.image});
   const auto finder = capture::make_target_finder(target_of(options));
   const Candidates candidates = find_candidates(options, *finder, context);
-  const auto found = calibrate(options, *finder, candidates);
+  const core::LensKind lens =
+      options.is_fisheye ? core::LensKind::fisheye : core::LensKind::rational;
+  const auto found = calibrate(options, *finder, candidates, lens);
+  judge_lens(options, lens, found, calibrate(options, *finder, candidates, other_kind(lens)),
+             context);
   if (!found) {
     refuse(
         options, candidates,

@@ -21,6 +21,10 @@ constexpr std::size_t kMinViews = 3;
 constexpr double kSurelyNotZero = 3;   // standard deviations
 constexpr double kFarAbove = 3;        // of the median error, for views that are dropped
 constexpr double kAlwaysFinePx = 0.5;  // views this good stay whatever the others do
+constexpr double kBetter = 0.9, kSurelyBetter = 0.5;  // shares of the other lens' median error
+constexpr double kAsGood = 1.05;
+constexpr double kLeftOut_px = 1e4;
+constexpr double kNarrow_rad = 90 * std::numbers::pi / 180;  // fields of view that no fisheye has
 // What is kept of a solution's digits. Beyond them they depend on where the solver's memory lies
 // (LAPACK sums by its alignment; 4e-10 px seen), so that two runs would write other files.
 constexpr double kPixelStep = 1e-5;
@@ -179,7 +183,7 @@ Calibration::View measure_view(const TargetView& points, const LensSolution& sol
   Calibration::View view;
   view.points = points;
   view.camera_from_target = solution.camera_from_target[i];
-  const Eigen::Vector2d nowhere(1e4, 1e4);
+  const Eigen::Vector2d nowhere(kLeftOut_px, kLeftOut_px);
   double sum = 0;
   for (std::size_t p = 0; p < points.on_target.size(); ++p) {
     const auto predicted = solution.camera.project(view.camera_from_target * points.on_target[p]);
@@ -226,6 +230,16 @@ TargetView points_within(const Calibration::View& view, double limit_px) {
     kept.in_image.push_back(view.points.in_image[i]);
   }
   return kept;
+}
+
+/// Of `points`, those that were left out being the worst.
+double median_error_px(const Calibration& calibration, std::size_t points) {
+  std::vector<double> errors_px;
+  for (const auto& view : calibration.views) {
+    for (const Eigen::Vector2d& error : view.errors_px) errors_px.push_back(error.norm());
+  }
+  errors_px.resize(points, kLeftOut_px);
+  return core::upper_median(errors_px);
 }
 
 std::optional<Calibration> calibrate_once(const std::vector<TargetView>& views,
@@ -307,7 +321,9 @@ std::optional<Calibration> calibrate_camera(const std::vector<TargetView>& views
     }
   }
   auto second = calibrate_once(kept, size, lens);
-  if (second) second->dropped = dropped;
+  if (!second) return std::nullopt;
+  second->dropped = dropped;
+  second->median_px = median_error_px(*second, errors_px.size());
   return second;
 }
 
@@ -322,10 +338,9 @@ std::vector<std::string> find_faults(const Calibration& calibration,
                                  calibration.views.size(), limits.min_views));
   }
   if (calibration.rms_px > limits.max_rms_px) {
-    faults.push_back(fmt::format(
-        "the points miss by {:.1f} px, the target is not flat or not the one given{}",
-        calibration.rms_px,
-        lens.lens == core::LensKind::fisheye ? "" : ", or the lens a fisheye (--fisheye)"));
+    faults.push_back(
+        fmt::format("the points miss by {:.1f} px, the target is not flat or not the one given",
+                    calibration.rms_px));
   }
   if (tilt_deg < limits.min_tilt_spread_deg) {
     faults.push_back(fmt::format(
@@ -360,6 +375,37 @@ std::vector<std::string> find_faults(const Calibration& calibration,
     }
   }
   return faults;
+}
+
+std::optional<LensDoubt> doubt_lens(core::LensKind chosen, const std::optional<Calibration>& found,
+                                    const std::optional<Calibration>& other,
+                                    const CalibrationLimits& limits) {
+  if (!other || !find_faults(*other, limits).empty()) return std::nullopt;
+  const bool is_fisheye = chosen == core::LensKind::fisheye;
+  const auto faults =
+      found ? find_faults(*found, limits) : std::vector<std::string>{"no such lens fits"};
+  const double own_px = found ? found->median_px : std::numeric_limits<double>::infinity();
+  const double other_px = other->median_px;
+  LensDoubt doubt{fmt::format("{} explains the points to {:.2f} px (median), {} to {:.2f} px",
+                              is_fisheye ? "a plain lens" : "a fisheye", other_px,
+                              is_fisheye ? "a fisheye" : "a plain lens", own_px),
+                  is_fisheye ? "leave --fisheye out" : "add --fisheye"};
+  if (!faults.empty() && other_px <= own_px) {
+    doubt.fault += "; " + faults.front();
+    doubt.is_sure = true;
+    return doubt;
+  }
+  if (other_px < kBetter * own_px) {
+    doubt.is_sure = other_px < kSurelyBetter * own_px;
+    return doubt;
+  }
+  // A plain lens with small errors at its corners can be told by its field of view only.
+  const auto& lens = other->camera.intrinsics();
+  const double view_rad = 2 * std::atan(lens.width_px / 2.0 / lens.focal_px.x());
+  if (!is_fisheye || view_rad > kNarrow_rad || other_px > kAsGood * own_px) return std::nullopt;
+  doubt.fault +=
+      fmt::format(", and the field of view is {:.0f} degrees", view_rad * 180 / std::numbers::pi);
+  return doubt;
 }
 
 }  // namespace sheen::capture

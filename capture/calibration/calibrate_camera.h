@@ -26,6 +26,7 @@ struct Calibration {
   Eigen::Vector2d focal_sigma_px{0, 0};      ///< standard deviations, from the residuals
   Eigen::Vector2d principal_sigma_px{0, 0};  ///< likewise
   double rms_px = 0;                         ///< over all points
+  double median_px = 0;  ///< of the errors of all points, those left out being the worst
   std::vector<View> views;
   std::vector<int> dropped;    ///< frames most of whose points fitted far worse than the others'
   double coverage = 0;         ///< share of the image area (kCoverageCells) with points, [0, 1]
@@ -60,5 +61,18 @@ struct CalibrationLimits {
 /// Why a calibration cannot be believed, each with what to do; empty: it can.
 std::vector<std::string> find_faults(const Calibration& calibration,
                                      const CalibrationLimits& limits);
+
+/// What speaks for the other kind of lens, with the median errors of both.
+struct LensDoubt {
+  std::string fault;
+  std::string remedy;
+  bool is_sure = false;  ///< the chosen kind cannot be right
+};
+
+/// Compares calibrations of the same images as the kind of lens that was chosen and as the other
+/// one. Nothing where the chosen one is the better one, or where neither can be believed.
+std::optional<LensDoubt> doubt_lens(core::LensKind chosen, const std::optional<Calibration>& found,
+                                    const std::optional<Calibration>& other,
+                                    const CalibrationLimits& limits);
 
 }  // namespace sheen::capture

@@ -6,6 +6,7 @@
 #include "capture/source/video_source.h"
 #include "core/diagnostics/error.h"
 #include "core/text/lower_case.h"
+#include "core/text/natural_order.h"
 
 #include <algorithm>
 #include <array>
@@ -74,7 +75,9 @@ std::vector<fs::path> pictures_in(const fs::path& folder) {
     if (is_picture_name(entry->path())) files.push_back(entry->path());
     if (!other) other = unreadable_ending(entry->path());
   }
-  std::sort(files.begin(), files.end());
+  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+    return core::comes_before(a.filename().string(), b.filename().string());
+  });
   if (files.empty() && other) {
     throw core::bad_input(folder, "holds pictures of " + other->name + " only, which are not read",
                           other->remedy);

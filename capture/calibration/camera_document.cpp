@@ -48,12 +48,34 @@ CameraKeys yaml_keys(const YAML::Node& map) {
   for (const auto& member : map) {
     if (!member.first.IsScalar()) continue;
     const YAML::Node& value = member.second;
+    if (member.first.Scalar() == "roi" && value.IsMap()) {
+      for (auto& [key, words] : yaml_keys(value)) keys["roi." + key] = std::move(words);
+    }
     if (value.IsMap() && !value["data"]) continue;
     std::vector<std::string> words;
     append_scalars(value.IsMap() ? value["data"] : value, words);
     if (words.size() <= kMostWords) keys[member.first.Scalar()] = std::move(words);
   }
   return keys;
+}
+
+/// ORB-SLAM writes Camera.fx, its third version Camera1.fx beside Camera.width; what follows the
+/// point is the key.
+CameraKeys without_prefixes(CameraKeys keys, const std::filesystem::path& path) {
+  if (!keys.contains("Camera.fx") && !keys.contains("Camera1.fx")) return keys;
+  if (keys.contains("Camera2.fx")) {
+    refuse_camera_file(path, "holds 2 cameras (Camera1, Camera2)",
+                       "keep the one that took the images");
+  }
+  CameraKeys plain;
+  for (auto& [key, words] : keys) {
+    const std::size_t point = key.find('.');
+    const std::string prefix = key.substr(0, point);
+    if (point == std::string::npos || (prefix != "Camera" && prefix != "Camera1")) continue;
+    const std::string name = key.substr(point + 1);
+    plain[name == "type" ? "camera_type" : name] = std::move(words);
+  }
+  return plain;
 }
 
 bool is_kalibr_camera(const std::string& key) {
@@ -89,7 +111,7 @@ CameraKeys read_yaml(const std::string& text, const std::filesystem::path& path)
                            ", " + cameras[1] + (cameras.size() > 2 ? ", ..." : "") + ")",
                        "keep the one that took the images");
   }
-  return yaml_keys(cameras.empty() ? root : root[cameras[0]]);
+  return without_prefixes(yaml_keys(cameras.empty() ? root : root[cameras[0]]), path);
 }
 
 void append_scalars(const nlohmann::json& node, std::vector<std::string>& words, int depth = 0) {

@@ -133,7 +133,8 @@ core::LensKind kind_of(const KeyReader& reader) {
   };
   if ((!flag.empty() && flag != "0" && flag != "false") ||
       is_one_of(distortion, {"equidistant", "fisheye", "kannala_brandt", "equi"}) ||
-      is_one_of(camera, {"fisheye", "opencv_fisheye", "kannala_brandt", "equidistant"})) {
+      is_one_of(camera,
+                {"fisheye", "opencv_fisheye", "kannala_brandt", "kannalabrandt8", "equidistant"})) {
     return core::LensKind::fisheye;
   }
   if (!is_one_of(camera, {"", "pinhole", "opencv", "perspective", "simple_pinhole", "radial",
@@ -149,6 +150,24 @@ core::LensKind kind_of(const KeyReader& reader) {
   return core::LensKind::rational;
 }
 
+/// ROS: size and matrix are the sensor's; the images are its region of interest, of which
+/// `binning` pixels were joined.
+void take_region(const KeyReader& reader, LensRecord& record) {
+  const auto take = [&](const std::string& axis, const std::string& side, int& side_px,
+                        double& focal_px, double& principal_px) {
+    const double offset = reader.number_of(("roi." + axis + "_offset").c_str(), 0);
+    const double region = reader.number_of(("roi." + side).c_str(), 0);
+    const double binning = std::max(1.0, reader.number_of(("binning_" + axis).c_str(), 1));
+    const double seen = region > 0 ? region : side_px;
+    if (!(offset >= 0 && offset + seen <= side_px)) reader.fail("roi lies outside of the image");
+    side_px = static_cast<int>(seen / binning);
+    focal_px /= binning;
+    principal_px = (principal_px - offset - (binning - 1) / 2) / binning;
+  };
+  take("x", "width", record.width_px, record.focal_px.x(), record.principal_px.x());
+  take("y", "height", record.height_px, record.focal_px.y(), record.principal_px.y());
+}
+
 /// OpenCV, ROS, and what Python programs dump under the same names.
 LensRecord matrix_record(const KeyReader& reader) {
   LensRecord record;
@@ -162,6 +181,26 @@ LensRecord matrix_record(const KeyReader& reader) {
     reader.fail("distortion_coefficients is missing or no matrix of the expected size");
   }
   record.distortion = reader.numbers("distortion_coefficients", *words);
+  take_region(reader, record);
+  return record;
+}
+
+/// One number a key, pixels counted as OpenCV does: ORB-SLAM's settings and many programs' JSON.
+LensRecord plain_record(const KeyReader& reader) {
+  LensRecord record;
+  read_size(reader, record);
+  record.kind = kind_of(reader);
+  for (const char* name : {"fy", "cx", "cy"}) {
+    if (!reader.has(name)) reader.fail(std::string(name) + " is missing");
+  }
+  const auto number = [&reader](const char* name) { return reader.number_of(name, 0); };
+  record.focal_px = {number("fx"), number("fy")};
+  record.principal_px = {number("cx"), number("cy")};
+  record.distortion =
+      record.kind == core::LensKind::fisheye
+          ? std::vector<double>{number("k1"), number("k2"), number("k3"), number("k4")}
+          : std::vector<double>{number("k1"), number("k2"), number("p1"), number("p2"),
+                                number("k3")};
   return record;
 }
 
@@ -240,6 +279,7 @@ LensRecord record_of(const CameraDocument& document, const std::filesystem::path
   if (document.is_agisoft) return agisoft_record(reader);
   if (reader.has("intrinsics")) return kalibr_record(reader);
   if (reader.has("fl_x")) return nerfstudio_record(reader);
+  if (reader.has("fx")) return plain_record(reader);
   return matrix_record(reader);
 }
 

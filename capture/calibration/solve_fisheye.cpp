@@ -85,6 +85,12 @@ std::optional<Eigen::Isometry3d> first_pose(const TargetView& view,
   return to_isometry(parameters);
 }
 
+bool is_in_front(const TargetView& view, const Eigen::Isometry3d& camera_from_target) {
+  return std::all_of(
+      view.on_target.begin(), view.on_target.end(),
+      [&](const Eigen::Vector3d& point) { return (camera_from_target * point).z() > 0; });
+}
+
 /// All poses and the lens.
 struct FisheyeBundle {
   const std::vector<TargetView>& views;
@@ -149,7 +155,8 @@ std::optional<FisheyeBundle> begin_with(const std::vector<TargetView>& views,
   FisheyeBundle bundle{views, {}, lens_parameters(camera)};
   for (const TargetView& view : views) {
     const auto pose = first_pose(view, camera);
-    if (!pose) return std::nullopt;
+    // What begins behind the camera has no residual, and Ceres would complain on stderr.
+    if (!pose || !is_in_front(view, *pose)) return std::nullopt;
     bundle.poses.push_back(to_parameters(*pose));
   }
   if (!bundle.solve(0, false)) return std::nullopt;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -30,7 +31,8 @@ struct FinerUnit {
 };
 constexpr std::array<FinerUnit, 3> kFinerUnits{
     {{1e3, "milliseconds"}, {1e6, "microseconds"}, {1e9, "nanoseconds"}}};
-constexpr double kSameSpan = 0.2;  // poses may begin later and end earlier than the frames
+constexpr double kFewOutside = 0.05;  // of the poses
+constexpr double kSameSpan = 0.2;     // poses may begin later and end earlier than the frames
 
 std::string range_text(double first, double last) {
   const bool is_whole = first == std::floor(first) && last == std::floor(last);
@@ -124,13 +126,56 @@ std::optional<StampFault> finer_stamps(const Trajectory& trajectory, const Frame
 std::optional<StampFault> shifted_stamps(const Trajectory& trajectory, int frames) {
   const auto& entries = trajectory.entries();
   if (trajectory.stamps() != Stamps::indices || frames < 2) return std::nullopt;
-  if (static_cast<int>(entries.size()) != frames || entries.front().stamp != 1 ||
-      entries.back().stamp != frames) {
+  // Frames without a pose may be missing, the first one too.
+  if (entries.empty() || entries.front().stamp < 1 || entries.back().stamp != frames) {
+    return std::nullopt;
+  }
+  return StampFault{fmt::format("its stamps run from {:.0f} to {}, the frames from 0 to {}",
+                                entries.front().stamp, frames, frames - 1),
+                    "frames count from 0: take one off every stamp"};
+}
+
+std::optional<StampFault> miscounting_stamps(const Trajectory& trajectory, const FrameSpan& frames,
+                                             int first_image) {
+  const auto& entries = trajectory.entries();
+  if (trajectory.stamps() != Stamps::indices || entries.size() < 2) return std::nullopt;
+  const double first = entries.front().stamp, last = entries.back().stamp;
+  if (first == 1 || (first > 1 && first_image == 1)) {
+    return StampFault{fmt::format("its stamps begin with {:.0f}, and frame 0{} has no pose", first,
+                                  first_image == 1 ? ", the image of number 1," : ""),
+                      "frames count from 0: if the stamps count from 1, take one off every stamp"};
+  }
+  const auto poses = static_cast<int>(entries.size());
+  if (first == 0 && last == poses - 1 && 2 * poses <= frames.last_index + 1) {
+    return StampFault{
+        fmt::format("gives the first {} of {} frames a pose and no other", poses,
+                    frames.last_index + 1),
+        "if its stamps count key frames, write the number of each one's frame in the recording"};
+  }
+  return std::nullopt;
+}
+
+std::optional<StampFault> stamps_outside(const Trajectory& trajectory, const FrameSpan& frames) {
+  const auto& entries = trajectory.entries();
+  const bool are_indices = trajectory.stamps() == Stamps::indices;
+  // Seconds may differ from a frame's by half the time between two.
+  const int steps = std::max(1, frames.last_index - frames.first_index);
+  const double slack = are_indices ? 0 : (frames.last_s - frames.first_s) / steps;
+  const double first = are_indices ? frames.first_index : frames.first_s;
+  const double last = are_indices ? frames.last_index : frames.last_s;
+  const auto outside = std::count_if(entries.begin(), entries.end(), [&](const auto& entry) {
+    return entry.stamp < first - slack || entry.stamp > last + slack;
+  });
+  if (outside == 0 ||
+      static_cast<double>(outside) < kFewOutside * static_cast<double>(entries.size())) {
     return std::nullopt;
   }
   return StampFault{
-      fmt::format("its stamps count from 1 to {}, the frames from 0 to {}", frames, frames - 1),
-      "frames count from 0: take one off every stamp"};
+      fmt::format("{} of its {} poses belong to no frame: {}", outside, entries.size(),
+                  ranges_text(trajectory, frames)),
+      are_indices
+          ? "stamps must be the frames' numbers in this recording, from 0"
+          : "stamps must count seconds from this recording's first frame, at its true rate"};
 }
 
 }  // namespace sheen::capture

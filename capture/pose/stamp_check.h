@@ -33,8 +33,18 @@ std::optional<StampFault> counting_stamps(const Trajectory& trajectory, const Fr
 /// and give wrong frames a pose, a few.
 std::optional<StampFault> finer_stamps(const Trajectory& trajectory, const FrameSpan& frames);
 
-/// Stamps that name the wrong frames although they match: indices that count from 1 for a recording
-/// of as many frames, which count from 0. `frames` is all of the recording.
+/// Stamps that name the wrong frames although they match: indices that count from 1 up to the
+/// number of frames, which count from 0. `frames` is all of the recording.
 std::optional<StampFault> shifted_stamps(const Trajectory& trajectory, int frames);
+
+/// Indices that may be counts of something else: none for frame 0 where images are numbered from 1
+/// or the indices begin with 1; or one after the other for the first half of the recording at most,
+/// as counts of key frames are. `first_image` is the number of the first image, 0 of a video.
+std::optional<StampFault> miscounting_stamps(const Trajectory& trajectory, const FrameSpan& frames,
+                                             int first_image);
+
+/// Stamps before the recording's first frame or after its last, a twentieth of them or more: of a
+/// longer recording, another clock, another rate, or counts of something else.
+std::optional<StampFault> stamps_outside(const Trajectory& trajectory, const FrameSpan& frames);
 
 }  // namespace sheen::capture

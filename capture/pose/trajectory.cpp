@@ -43,6 +43,12 @@ std::vector<std::string_view> words_of(std::string_view text) {
 /// What a line of another form is, as far as it is known; empty for one of no known form.
 std::string known_form(std::string_view text, const std::vector<std::string_view>& words) {
   const auto commas = std::count(text.begin(), text.end(), ',');
+  if (words.size() == 8 && !core::parse_number(words[0]) &&
+      std::all_of(words.begin() + 1, words.end(),
+                  [](std::string_view word) { return core::parse_number(word).has_value(); })) {
+    return "begins with a name, " + core::quotable(words[0]) +
+           ", where its stamp should be: write the number of the image, counted from 0";
+  }
   const bool is_heading = std::any_of(text.begin(), text.end(), [](char c) {
     return (c >= 'a' && c <= 'z' && c != 'e' && c != 'd') || c == '_';
   });

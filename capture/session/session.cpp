@@ -4,6 +4,7 @@
 #include "capture/calibration/calibration_target.h"
 #include "capture/calibration/camera_file.h"
 #include "capture/files/text_file.h"
+#include "capture/plausibility/camera_check.h"
 #include "capture/session/frame_stamps.h"
 #include "capture/session/new_session.h"
 #include "capture/session/session_file.h"
@@ -12,7 +13,9 @@
 #include "capture/source/still_reader.h"
 #include "capture/source/video_source.h"
 #include "core/diagnostics/error.h"
+#include "core/text/lower_case.h"
 #include "core/text/nesting.h"
+#include "core/text/number.h"
 
 #include <Eigen/SVD>
 #include <nlohmann/json.hpp>
@@ -28,6 +31,18 @@ using nlohmann::json;
 
 constexpr const char* kRemedy = "see docs/session-format.md";
 
+/// What a folder holds under this name in other letters, as systems that tell no case write it.
+std::optional<std::string> same_name_in_other_case(const std::filesystem::path& path) {
+  const std::string wanted = core::lower_case(path.filename().string());
+  std::error_code fault;
+  for (std::filesystem::directory_iterator entry(path.parent_path(), fault), last;
+       !fault && entry != last; entry.increment(fault)) {
+    std::string name = entry->path().filename().string();
+    if (core::lower_case(name) == wanted) return name;
+  }
+  return std::nullopt;
+}
+
 /// session.json with errors that name the file and warnings for what is not understood.
 class SessionReader {
  public:
@@ -35,8 +50,11 @@ class SessionReader {
       : folder_(folder), path_(folder / "session.json") {
     const std::string text = read_text_file(path_, kMaxSessionBytes);
     if (core::json_depth(text) > core::kMostNesting) this->fail("nests too deep");
+    if (text.find_first_not_of(" \t\n") == std::string::npos) fail("is empty");
     try {
-      root_ = json::parse(text);
+      root_ = json::parse(text, refuse_second_keys());
+    } catch (const json::out_of_range&) {
+      fail("holds a number that is too large for any computer");
     } catch (const json::parse_error& fault) {
       const auto before = static_cast<std::ptrdiff_t>(std::min(fault.byte, text.size()));
       const auto line = 1 + std::count(text.begin(), text.begin() + before, '\n');
@@ -48,6 +66,19 @@ class SessionReader {
 
   [[noreturn]] void fail(const std::string& fault, const std::string& remedy = kRemedy) const {
     throw core::bad_input(path_, fault, remedy);
+  }
+
+  /// Of two equal keys the last one would win without a word.
+  [[nodiscard]] json::parser_callback_t refuse_second_keys() const {
+    return [this, keys = std::vector<std::set<std::string>>()](
+               int /*depth*/, json::parse_event_t event, json& parsed) mutable {
+      if (event == json::parse_event_t::object_start) keys.emplace_back();
+      if (event == json::parse_event_t::object_end) keys.pop_back();
+      if (event == json::parse_event_t::key && !keys.back().insert(parsed.dump()).second) {
+        fail("holds the key " + core::quotable(parsed.dump()) + " twice", "keep one of them");
+      }
+      return true;
+    };
   }
 
   [[nodiscard]] const json& root() const { return root_; }
@@ -68,10 +99,11 @@ class SessionReader {
     return found->get<std::string>();
   }
 
-  /// A path as written, after the check that it stays within the folder.
+  /// A path, after the check that it stays within the folder. Windows separates by backslashes.
   [[nodiscard]] std::optional<std::string> inner_path(const json& parent, const char* key) const {
-    const auto written = text(parent, key);
+    auto written = text(parent, key);
     if (!written) return std::nullopt;
+    std::replace(written->begin(), written->end(), '\\', '/');
     const std::filesystem::path relative(*written);
     const auto normal = relative.lexically_normal();
     if (relative.is_absolute() || normal.begin() == normal.end() || *normal.begin() == ".." ||
@@ -89,8 +121,11 @@ class SessionReader {
     const auto path = folder_ / *written;
     std::error_code no_throw;
     if (!std::filesystem::is_regular_file(path, no_throw)) {
-      throw core::bad_input(path, "there is no such file, though session.json names it",
-                            "add it or correct session.json");
+      const auto other = same_name_in_other_case(path);
+      throw core::bad_input(
+          path, "there is no such file, though session.json names it",
+          other ? "the folder holds " + *other + ": small and capital letters differ"
+                : "add it or correct session.json");
     }
     return path;
   }
@@ -254,8 +289,12 @@ Session read_session(SessionReader& reader, const std::filesystem::path& folder)
   session.poses = reader.inner_file(reader.root(), "poses");
   read_object(reader, session);
   session.camera_file = reader.inner_file(reader.root(), "camera");
-  if (session.camera_file) session.camera = read_camera(*session.camera_file);
   session.warnings = std::move(reader.warnings);
+  if (!session.camera_file) return session;
+  session.camera = read_camera(*session.camera_file);
+  for (const std::string& doubt : check_camera(session.camera)) {
+    session.warnings.push_back(session.camera_file->string() + ": " + doubt);
+  }
   return session;
 }
 

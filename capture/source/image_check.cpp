@@ -11,12 +11,12 @@
 namespace sheen::capture {
 namespace {
 
-std::string text(const ImageSize& size) {
-  return std::to_string(size.width_px) + "x" + std::to_string(size.height_px);
-}
-
 /// Images of one lens that were made smaller or larger keep their shape; others were cropped, too.
 std::string remedy_for(const ImageSize& size, const ImageSize& expected) {
+  if (size.width_px == expected.height_px && size.height_px == expected.width_px) {
+    return "the images are turned by 90 degrees against it: calibrate from such images, or turn "
+           "them back";
+  }
   const auto across = std::int64_t{size.width_px} * expected.height_px;
   const auto down = std::int64_t{size.height_px} * expected.width_px;
   if (across != down || expected.width_px <= 0) {
@@ -30,11 +30,16 @@ std::string remedy_for(const ImageSize& size, const ImageSize& expected) {
 
 }  // namespace
 
+std::string size_text(const ImageSize& size) {
+  return std::to_string(size.width_px) + "x" + std::to_string(size.height_px);
+}
+
 void check_image_size(const std::filesystem::path& subject, const ImageSize& size,
                       const ImageSize& expected) {
   if (size == expected) return;
-  throw core::bad_input(subject, "is " + text(size) + " but the camera file says " + text(expected),
-                        remedy_for(size, expected));
+  throw core::bad_input(
+      subject, "is " + size_text(size) + " but the camera file says " + size_text(expected),
+      remedy_for(size, expected));
 }
 
 void check_range(const std::filesystem::path& subject, const FrameRange& range,

@@ -4,8 +4,13 @@
 #include "capture/source/frame_range.h"
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
 namespace sheen::capture {
+
+/// "640x360"
+std::string size_text(const ImageSize& size);
 
 /// Throws core::Error (bad_input) naming both sizes when `size` is not the camera's.
 void check_image_size(const std::filesystem::path& subject, const ImageSize& size,

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "capture/source/image_folder_source.h"
 
+#include "capture/calibration/calibration_images.h"
 #include "capture/source/image_check.h"
 #include "capture/source/image_facts.h"
 #include "capture/source/still_reader.h"
 #include "core/diagnostics/error.h"
+#include "core/text/number.h"
 
 #include <algorithm>
 #include <charconv>
@@ -27,6 +29,46 @@ std::set<int> find_numbers(const std::filesystem::path& folder, const NumberedNa
     }
   }
   return numbers;
+}
+
+/// The pattern of a name whose last digits are its number: IMG_0457.JPG -> IMG_%04d.JPG.
+std::string pattern_of(const std::string& file_name) {
+  const std::size_t last = file_name.find_last_of("0123456789");
+  if (last == std::string::npos) return {};
+  const std::size_t before = file_name.find_last_not_of("0123456789", last);
+  const std::size_t first = before == std::string::npos ? 0 : before + 1;
+  const std::size_t digits = last + 1 - first;
+  const std::string width =
+      file_name[first] == '0' && digits > 1 ? "0" + std::to_string(digits) : std::string();
+  return file_name.substr(0, first) + "%" + width + "d" + file_name.substr(last + 1);
+}
+
+/// No file has a name of the pattern: says what the folder holds instead.
+[[noreturn]] void refuse_other_names(const std::filesystem::path& session_folder,
+                                     const NumberedName& name) {
+  const std::filesystem::path folder = session_folder / name.folder();
+  std::error_code fault;
+  if (!std::filesystem::is_directory(folder, fault)) {
+    throw core::bad_input(folder, "there is no such folder", "correct \"images\" in session.json");
+  }
+  std::string first;
+  for (std::filesystem::directory_iterator entry(folder, fault), last; !fault && entry != last;
+       entry.increment(fault)) {
+    const std::string file = entry->path().filename().string();
+    if (file.starts_with('.') || !is_picture_name(file)) continue;
+    if (first.empty() || file < first) first = file;
+  }
+  if (first.empty()) {
+    throw core::bad_input(session_folder / name.at(0), "there is no such image, and no other",
+                          "number the images from 0 or 1");
+  }
+  const std::string pattern = pattern_of(first);
+  throw core::bad_input(
+      session_folder / name.at(0),
+      "there is no image of this name or number; the folder holds " + core::quotable(first),
+      pattern.empty() ? "number the images from 0 or 1"
+                      : "write \"images\": \"" + core::quotable(name.folder() + pattern) +
+                            "\" in session.json");
 }
 
 class ImageFolderSource : public FrameSource {
@@ -131,8 +173,10 @@ NumberedImages find_images(const std::filesystem::path& session_folder, const Nu
                           "pictures of " + kind->name + " are not read", kind->remedy);
   }
   const std::set<int> numbers = find_numbers(session_folder / name.folder(), name);
-  if (numbers.empty() || *numbers.begin() > 1) {
-    throw core::bad_input(session_folder / name.at(0), "there is no first image",
+  if (numbers.empty()) refuse_other_names(session_folder, name);
+  if (*numbers.begin() > 1) {
+    throw core::bad_input(session_folder / name.at(*numbers.begin()),
+                          "is the first image: none has the number 0 or 1",
                           "number the images from 0 or 1");
   }
   const NumberedImages images{*numbers.begin(), static_cast<int>(numbers.size())};

@@ -14,11 +14,15 @@ std::string describe(const Orientation& orientation) {
   return text.empty() ? "upright" : text;
 }
 
+bool can_have_size(const ImageSize& stored, const ImageSize& expected,
+                   const Orientation& orientation) {
+  return stored == expected ||
+         (orientation.swaps_sides() && ImageSize{stored.height_px, stored.width_px} == expected);
+}
+
 TurnChoice choose_turn(const std::filesystem::path& subject, const ImageSize& stored,
                        const ImageSize& expected, const Orientation& orientation) {
-  const ImageSize shown =
-      orientation.swaps_sides() ? ImageSize{stored.height_px, stored.width_px} : stored;
-  if (!(stored == expected) && shown == expected) {
+  if (!(stored == expected) && can_have_size(stored, expected, orientation)) {
     return {true, "is to be shown " + describe(orientation) +
                       ", and the camera file is for the turned images: they are turned"};
   }

@@ -30,6 +30,10 @@ struct TurnChoice {
   std::string note;    ///< to be said, without the file's name; empty where nothing is
 };
 
+/// Whether stored pixels have a camera's size, or their turned ones.
+bool can_have_size(const ImageSize& stored, const ImageSize& expected,
+                   const Orientation& orientation);
+
 /// Stored pixels where they have the camera's size; turned ones where only those have it. Throws
 /// core::Error (bad_input) naming both sizes where neither has.
 TurnChoice choose_turn(const std::filesystem::path& subject, const ImageSize& stored,

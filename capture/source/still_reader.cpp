@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "capture/source/still_reader.h"
 
+#include "capture/source/image_check.h"
 #include "capture/source/jpeg_decoder.h"
 #include "capture/source/picture_bytes.h"
 #include "core/diagnostics/error.h"
@@ -66,12 +67,18 @@ cv::Mat StillReader::read(const std::filesystem::path& path, std::optional<Image
 
   // Sizes first: they are told by the headers of most kinds, before memory is asked for.
   const auto choose = [&](const ImageSize& stored) {
-    if (!expected && !bound_) bound_ = stored;
-    return choose_turn(path, stored, expected.value_or(bound_.value_or(stored)), facts.orientation);
+    const ImageSize wanted = expected.value_or(bound_.value_or(stored));
+    if (bound_ && !can_have_size(stored, wanted, facts.orientation)) {
+      throw core::bad_input(
+          path, "is " + size_text(stored) + ", the images before it are " + size_text(*bound_),
+          "keep images of one camera, size and zoom together");
+    }
+    return choose_turn(path, stored, wanted, facts.orientation);
   };
   if (facts.size) static_cast<void>(choose(*facts.size));
   cv::Mat image = decoded(path, bytes, facts);
   const TurnChoice turn = choose({image.cols, image.rows});
+  if (!bound_) bound_ = ImageSize{image.cols, image.rows};
   if (turn.turns) image = turned(image, facts.orientation);
   if (!turn.note.empty()) note(path, turn.note);
   convert_colours(path, facts, image);

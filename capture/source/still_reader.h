@@ -35,7 +35,7 @@ class StillReader {
   void note(const std::filesystem::path& path, const std::string& cause);
   void convert_colours(const std::filesystem::path& path, const ImageFacts& facts, cv::Mat& bgr);
 
-  std::optional<ImageSize> bound_;
+  std::optional<ImageSize> bound_;                                ///< stored size of the first
   std::map<std::string, std::optional<ColourProfile>> profiles_;  ///< by their bytes
   std::optional<ColourProfile> adobe_rgb_;
   std::map<std::string, Cause> causes_;

@@ -29,7 +29,7 @@ constexpr std::size_t kMostPending = 256;  // packets whose picture is not out y
 constexpr int kMostFaults = 1000;  // in a row, without a packet: the decoder has lost itself
 
 core::Error undecodable(const std::filesystem::path& path) {
-  return core::bad_input(path, "cannot be decoded as a video", "check that it is complete");
+  return core::bad_input(path, "cannot be decoded as a video", "check that it is one and complete");
 }
 
 /// The bytes of a growing video, as FFmpeg reads them; nothing may be thrown through FFmpeg.
@@ -80,6 +80,10 @@ bool lacks_index(const std::filesystem::path& path) {
 }
 
 core::Error unreadable(const std::filesystem::path& path) {
+  std::error_code no_throw;
+  if (std::filesystem::file_size(path, no_throw) == 0) {
+    return core::bad_input(path, "is empty", "copy or record it again");
+  }
   if (!lacks_index(path)) return undecodable(path);
   return core::bad_input(path, "the recording was not finished: no index (moov)",
                          "copy it again if the copy was cut short; else mend it from an intact "
@@ -110,6 +114,33 @@ InputPtr open_input(const std::filesystem::path& path, GrowingInput* growing) {
   InputPtr input(context);
   if (avformat_find_stream_info(context, nullptr) < 0) throw undecodable(path);
   return input;
+}
+
+/// What a file holds in place of a video.
+std::string other_streams(const AVFormatContext& input) {
+  for (unsigned i = 0; i < input.nb_streams; ++i) {
+    if (input.streams[i]->codecpar->codec_type == AVMEDIA_TYPE_AUDIO) return ", but sound";
+  }
+  return {};
+}
+
+/// Number of the video stream whose pictures have the wanted size, upright or turned; FFmpeg's
+/// choice where none or several have.
+int wanted_stream(const AVFormatContext& input, const std::optional<ImageSize>& wanted) {
+  int found = -1;
+  for (unsigned i = 0; wanted && i < input.nb_streams; ++i) {
+    const AVStream& stream = *input.streams[i];
+    const AVCodecParameters& stated = *stream.codecpar;
+    const bool is_picture = (stream.disposition & AV_DISPOSITION_ATTACHED_PIC) != 0;
+    if (stated.codec_type != AVMEDIA_TYPE_VIDEO || is_picture) continue;
+    if (!(ImageSize{stated.width, stated.height} == *wanted) &&
+        !(ImageSize{stated.height, stated.width} == *wanted)) {
+      continue;
+    }
+    if (found >= 0) return -1;
+    found = static_cast<int>(i);
+  }
+  return found;
 }
 
 /// For a few images FFmpeg takes the ticks of the container's clock for a rate, 1000 in Matroska.
@@ -173,7 +204,8 @@ std::optional<int> shown_pictures(const AVFormatContext& input, AVStream& stream
 }  // namespace
 
 struct VideoDecoder::Impl {
-  Impl(const std::filesystem::path& video, VideoBytes* bytes);
+  Impl(const std::filesystem::path& video, VideoBytes* bytes,
+       const std::optional<ImageSize>& wanted);
 
   bool decode();
   void read_packet();
@@ -202,10 +234,15 @@ struct VideoDecoder::Impl {
   double time_s = 0;
 };
 
-VideoDecoder::Impl::Impl(const std::filesystem::path& video, VideoBytes* bytes)
+VideoDecoder::Impl::Impl(const std::filesystem::path& video, VideoBytes* bytes,
+                         const std::optional<ImageSize>& wanted)
     : path(video), growing{bytes, {}, {}}, input(open_input(video, bytes ? &growing : nullptr)) {
   const AVCodec* decoder = nullptr;
-  stream_index = av_find_best_stream(input.get(), AVMEDIA_TYPE_VIDEO, -1, -1, &decoder, 0);
+  stream_index = av_find_best_stream(input.get(), AVMEDIA_TYPE_VIDEO, wanted_stream(*input, wanted),
+                                     -1, &decoder, 0);
+  if (stream_index == AVERROR_STREAM_NOT_FOUND) {
+    throw core::bad_input(path, "holds no video" + other_streams(*input), "name the recording");
+  }
   if (stream_index < 0 || decoder == nullptr || !packet || !frame) throw undecodable(path);
   AVStream& stream = *input->streams[stream_index];
   for (unsigned i = 0; i < input->nb_streams; ++i) {
@@ -345,11 +382,12 @@ bool VideoDecoder::Impl::decode() {
   return false;
 }
 
-VideoDecoder::VideoDecoder(const std::filesystem::path& path)
-    : impl_(std::make_unique<Impl>(path, nullptr)) {}
+VideoDecoder::VideoDecoder(const std::filesystem::path& path,
+                           const std::optional<ImageSize>& wanted)
+    : impl_(std::make_unique<Impl>(path, nullptr, wanted)) {}
 
 VideoDecoder::VideoDecoder(const std::filesystem::path& name, VideoBytes& bytes)
-    : impl_(std::make_unique<Impl>(name, &bytes)) {}
+    : impl_(std::make_unique<Impl>(name, &bytes, std::nullopt)) {}
 
 VideoDecoder::~VideoDecoder() = default;
 VideoDecoder::VideoDecoder(VideoDecoder&&) noexcept = default;

@@ -26,8 +26,10 @@ struct VideoFacts {
 /// files are opened, whatever a file refers to.
 class VideoDecoder {
  public:
-  /// Throws core::Error (bad_input) for what cannot be decoded.
-  explicit VideoDecoder(const std::filesystem::path& path);
+  /// Of several video streams the only one of the `wanted` size, else FFmpeg's choice. Throws
+  /// core::Error (bad_input) for what cannot be decoded.
+  explicit VideoDecoder(const std::filesystem::path& path,
+                        const std::optional<ImageSize>& wanted = std::nullopt);
   /// Of a video that still grows, called `name` in messages; `bytes` is borrowed. Waits until there
   /// is enough to know the video. What `bytes` throws is thrown here and by `next`.
   VideoDecoder(const std::filesystem::path& name, VideoBytes& bytes);

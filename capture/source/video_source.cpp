@@ -143,7 +143,8 @@ std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, const
                                         const FrameRange& range, std::optional<double> fps) {
   check_is_file(path);
   if (auto source = open_motion_jpeg(path, size, range, fps)) return source;
-  return read_ahead(std::make_unique<VideoSource>(path, VideoDecoder(path), size, range, fps));
+  return read_ahead(
+      std::make_unique<VideoSource>(path, VideoDecoder(path, size), size, range, fps));
 }
 
 std::unique_ptr<FrameSource> open_growing_video(const std::filesystem::path& name,

@@ -35,15 +35,41 @@ struct FileKind {
   const char* ending;  ///< null for what is not read
   const char* name;
 };
-constexpr FileKind kFileKinds[] = {
-    {"glTF", ".glb", "binary glTF"},   {"ply", ".ply", "PLY"}, {"solid ", nullptr, "STL"},
-    {"Kaydara FBX", nullptr, "FBX"},   {"PK", nullptr, "ZIP"}, {"<?xml", nullptr, "XML"},
-    {"{", nullptr, "JSON (glTF text)"}};
+constexpr FileKind kFileKinds[] = {{"glTF", ".glb", "binary glTF"},
+                                   {"ply", ".ply", "PLY"},
+                                   {"solid ", nullptr, "STL"},
+                                   {"Kaydara FBX", nullptr, "FBX"},
+                                   {"PK", nullptr, "ZIP"},
+                                   {"<?xml", nullptr, "XML"},
+                                   {"{", nullptr, "JSON (glTF text)"},
+                                   {"<!DOCTYPE", nullptr, "web page"},
+                                   {"<html", nullptr, "web page"}};
+// Git leaves it in place of a large file that was not fetched.
+constexpr const char* kLargeFilePointer = "version https://";
+
+/// Its only mark: 80 bytes of anything, then the number of triangles, of which each has 50 bytes.
+bool is_binary_stl(const fs::path& path, std::ifstream& file) {
+  unsigned char count[4] = {};
+  file.clear();
+  file.seekg(80);
+  if (!file.read(reinterpret_cast<char*>(count), sizeof(count))) return false;
+  const std::uint64_t triangles = count[0] | std::uint64_t{count[1]} << 8U |
+                                  std::uint64_t{count[2]} << 16U | std::uint64_t{count[3]} << 24U;
+  std::error_code failure;
+  return triangles > 0 && fs::file_size(path, failure) == 84 + 50 * triangles;
+}
 
 void check_kind(const fs::path& path, const std::string& extension) {
   std::ifstream file(path, std::ios::binary);
   std::string start(16, '\0');
   file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (start.starts_with(kLargeFilePointer)) {
+    throw bad_input(path, "is a pointer of Git LFS, not the file", "fetch it: git lfs pull");
+  }
+  if (is_binary_stl(path, file)) {
+    throw bad_input(path, "is a file of kind STL, whatever its ending",
+                    "convert it to PLY, OBJ or GLB");
+  }
   for (const FileKind& kind : kFileKinds) {
     if (!start.starts_with(kind.start)) continue;
     if (kind.ending != nullptr && extension == kind.ending) return;
@@ -56,7 +82,8 @@ void check_kind(const fs::path& path, const std::string& extension) {
 void check_file(const fs::path& path) {
   const std::string extension = lower_case(path.extension().string());
   if (extension != ".ply" && extension != ".obj" && extension != ".glb") {
-    throw bad_input(path, "is not a mesh format that can be read", "convert it to PLY, OBJ or GLB");
+    throw bad_input(path, "is not a mesh format that can be read",
+                    "convert it to PLY, OBJ or GLB, for instance in Blender or MeshLab");
   }
   std::error_code failure;
   if (!fs::exists(path, failure)) throw bad_input(path, "does not exist", "check the name");
@@ -215,6 +242,9 @@ Mesh read_mesh(const std::filesystem::path& path, std::vector<std::string>* note
   if (lower_case(path.extension().string()) == ".obj")
     join_identical_vertices(mesh, vertex_colours);
   drop_degenerate_triangles(mesh);
+  if (mesh.positions.empty()) {
+    throw bad_input(path, "holds no vertex", "check that it is a mesh, whatever its name");
+  }
   if (mesh.triangles.empty()) {
     throw bad_input(path, "has no triangles", "give a surface, not a point cloud");
   }

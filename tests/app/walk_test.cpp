@@ -80,7 +80,7 @@ TEST_F(Walk, WhatCannotBeReadIsNamedAsItWasGiven) {
   expect_refused(pictures, one + ": is empty; check that it is complete, or leave it out");
   const std::string video = folder_.path() / "empty.mp4";
   write_file(video, "");
-  expect_refused(video, video + ": cannot be decoded as a video; check that it is complete");
+  expect_refused(video, video + ": is empty; copy or record it again");
 }
 
 TEST_F(Walk, TooFewFramesDoNotTellTheCamera) {

@@ -16,6 +16,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <memory>
 #include <numbers>
 #include <random>
@@ -188,6 +189,98 @@ TEST(FisheyeCalibration, NoOtherLensFits) {
   EXPECT_TRUE(!found || found->rms_px > 2 * 0.2 * std::numbers::sqrt2);
 }
 
+/// The same lens in images of half the size, as photographs of a board of 48 tags show it.
+class FisheyePictures : public testing::Test {
+ protected:
+  static constexpr ImageSize kPicture{640, 360};
+
+  static core::CameraModel lens() {
+    core::CameraModel::Intrinsics intrinsics = fisheye_camera().intrinsics();
+    intrinsics.width_px = kPicture.width_px;
+    intrinsics.height_px = kPicture.height_px;
+    intrinsics.focal_px = {260, 260.5};  // 141 degrees along the longer side
+    intrinsics.principal_px = {322, 177.5};
+    return core::CameraModel(intrinsics);
+  }
+
+  static void SetUpTestSuite() {
+    for (int i = 0; i < 12; ++i) {
+      const auto pose = look_at_board(0.1 + 0.02 * (i % 4), (50 + 13 * (i % 3)) * kDegree,
+                                      2 * std::numbers::pi * i * 0.381966);
+      cv::Mat grey;
+      cv::cvtColor(render_board(board_, lens(), pose, {.supersampling = 3}), grey,
+                   cv::COLOR_BGR2GRAY);
+      pictures_.push_back(grey);
+    }
+  }
+  static void TearDownTestSuite() { pictures_.clear(); }
+
+  /// As `sheen calibrate` does: corners by a plain camera, again through the lens that was found.
+  static std::optional<Calibration> calibrate(core::LensKind kind) {
+    const auto finder = make_target_finder(board_);
+    std::vector<TargetView> views;
+    for (const cv::Mat& picture : pictures_) {
+      auto view = finder->find(picture);
+      if (!view) continue;
+      view->frame_index = static_cast<int>(views.size());
+      views.push_back(std::move(*view));
+    }
+    EXPECT_EQ(views.size(), pictures_.size());
+    const auto first = calibrate_camera(views, kPicture, kind);
+    if (!first) return std::nullopt;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      finder->refine(pictures_[i], first->camera, views[i]);
+    }
+    return calibrate_camera(views, kPicture, kind);
+  }
+
+  inline static const Board board_ = make_grid_board("tag36h11", 8, 6, 0.03, 0.0375);
+  inline static std::vector<cv::Mat> pictures_;
+};
+
+TEST_F(FisheyePictures, TellTheProjectionAllOverTheImage) {
+  const auto found = calibrate(core::LensKind::fisheye);
+  ASSERT_TRUE(found);
+  EXPECT_TRUE(find_faults(*found, {}).empty());
+  double squares = 0, worst = 0;
+  int places = 0;
+  for (int y = 0; y < kPicture.height_px; y += 15) {
+    for (int x = 0; x < kPicture.width_px; x += 15) {
+      const auto pixel = found->camera.project(*lens().unproject({x, y}));
+      ASSERT_TRUE(pixel);
+      const double error = (*pixel - Eigen::Vector2d(x, y)).norm();
+      squares += error * error;
+      worst = std::max(worst, error);
+      ++places;
+    }
+  }
+  std::printf("projection against the truth at %d places: %.3f px RMS, %.3f px at most\n", places,
+              std::sqrt(squares / places), worst);
+  EXPECT_LT(std::sqrt(squares / places), 0.16);
+  EXPECT_LT(worst, 0.3);
+}
+
+TEST_F(FisheyePictures, AreNotThoseOfAPlainLensAndItIsSaid) {
+  const auto fisheye = calibrate(core::LensKind::fisheye);
+  const auto plain = calibrate(core::LensKind::rational);
+  const auto doubt = doubt_lens(core::LensKind::rational, plain, fisheye, {});
+  ASSERT_TRUE(doubt);
+  EXPECT_TRUE(doubt->is_sure);
+  EXPECT_EQ(doubt->remedy, "add --fisheye");
+  EXPECT_FALSE(doubt_lens(core::LensKind::fisheye, fisheye, plain, {}));
+}
+
+TEST(Calibration, APlainLensNeedsNoFisheye) {
+  const auto views = good_views(make_camera(kSize.width_px, kSize.height_px, true), 14, 0.2, 2);
+  const auto plain = calibrate_camera(views, kSize);
+  const auto fisheye = calibrate_camera(views, kSize, core::LensKind::fisheye);
+  EXPECT_FALSE(doubt_lens(core::LensKind::rational, plain, fisheye, {}));
+  const auto doubt = doubt_lens(core::LensKind::fisheye, fisheye, plain, {});
+  ASSERT_TRUE(doubt);
+  EXPECT_FALSE(doubt->is_sure);
+  EXPECT_EQ(doubt->remedy, "leave --fisheye out");
+}
+
 /// Whether one of the faults contains a word.
 bool has_fault(const std::vector<std::string>& faults, const std::string& word) {
   return std::any_of(faults.begin(), faults.end(), [&](const std::string& fault) {
@@ -321,7 +414,7 @@ TEST(CalibrationImages, TakesAFolderByNameAndRefusesMixedSizes) {
   const auto mixed = open_calibration_images(folder.path());
   mixed->next();
   mixed->next();
-  expect_bad_input([&] { mixed->next(); }, "c.png");
+  expect_bad_input([&] { mixed->next(); }, "c.png", "is 170x120, the images before it are 160x120");
   const auto broken = folder.write("0.png", "no image at all");
   expect_bad_input([&] { open_calibration_images(folder.path())->next(); }, "0.png");
   const auto video = folder.write("walk.mp4", "no video");

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <random>
+#include <regex>
 #include <sstream>
 
 namespace sheen::capture::test {
@@ -92,7 +93,41 @@ TEST_F(CameraForms, RosCameraInfo) {
                    "K: [900.5, 0, 641.5, 0, 902.25, 357.75, 0, 0, 1]\n"
                    "R: [1, 0, 0, 0, 1, 0, 0, 0, 1]\n"),
               kRadial);
+  // A region of a sensor of 2600 x 1500 whose pixels were joined two by two.
+  expect_same(
+      read("info.yaml",
+           "height: 1500\nwidth: 2600\n"
+           "distortion_model: \"plumb_bob\"\nD: [-0.25, 0.08, 0.001, -0.002, 0.01]\n"
+           "K: [1801, 0, 1303.5, 0, 1804.5, 746, 0, 0, 1]\n"
+           "binning_x: 2\nbinning_y: 2\n"
+           "roi: {x_offset: 20, y_offset: 30, height: 1440, width: 2560, do_rectify: false}"),
+      kRadial);
   refuse("ost.yaml", ros("thin_prism_fisheye", "[0, 0, 0, 0]", true), "thin_prism_fisheye");
+}
+
+TEST_F(CameraForms, OneNumberAKey) {
+  const std::string numbers =
+      "k1: -0.25\nP.k2: 0.08\nP.p1: 0.001\nP.p2: -0.002\nP.k3: 0.01\nP.fx: 900.5\nP.fy: 902.25\n"
+      "P.cx: 641.5\nP.cy: 357.75\nP.width: 1280\nP.height: 720\n";
+  const auto with_prefix = [&](const std::string& prefix) {
+    return prefix + std::regex_replace(numbers, std::regex("P[.]"), prefix);
+  };
+  expect_same(read("plain.yaml", with_prefix("")), kRadial);
+  expect_same(
+      read("orb_slam.yaml", "%YAML:1.0\nCamera.type: \"PinHole\"\n" + with_prefix("Camera.")),
+      kRadial);
+  expect_same(read("orb_slam.yaml",
+                   "%YAML:1.0\nCamera.type: \"KannalaBrandt8\"\nCamera1.fx: 420.5\n"
+                   "Camera1.fy: 421.25\nCamera1.cx: 638.5\nCamera1.cy: 361.75\n"
+                   "Camera1.k1: -0.02\nCamera1.k2: 0.006\nCamera1.k3: -0.003\n"
+                   "Camera1.k4: 0.0004\nCamera.width: 1280\nCamera.height: 720\n"),
+              kFisheye);
+  expect_same(read("phone.json",
+                   R"({"fx": 900.5, "fy": 902.25, "cx": 641.5, "cy": 357.75, "width": 1280,
+                       "height": 720, "k1": -0.25, "k2": 0.08, "p1": 0.001, "p2": -0.002,
+                       "k3": 0.01})"),
+              kRadial);
+  refuse("half.json", R"({"fx": 900.5, "fy": 902.25, "width": 1280, "height": 720})", "cx");
 }
 
 TEST_F(CameraForms, KalibrCamchain) {

@@ -94,7 +94,7 @@ TEST(DepthImages, AreCountedFromTheirFirstNumber) {
 
 TEST(DepthImages, WhatIsMissingIsNamed) {
   const DepthFolder folder;
-  expect_bad_input([&] { static_cast<void>(folder.read(0)); }, "0000.png", "no first image");
+  expect_bad_input([&] { static_cast<void>(folder.read(0)); }, "0000.png", "no such image");
   folder.write(0, numbered(kWidth, kHeight));
   expect_bad_input([&] { static_cast<void>(folder.read(1)); }, "0001.png", "frame 1",
                    "session.json");

@@ -367,6 +367,16 @@ TEST(CalibrationImages, PassOverWhatOthersLeaveInFolders) {
   EXPECT_EQ(images->frame_count(), 3);
 }
 
+TEST(CalibrationImages, ComeInTheOrderOfTheirNumbers) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> in_order{"IMG_9.JPG", "IMG_09.png", "IMG_10.JPG", "IMG_0100.jpg",
+                                          "a1b2.jpg",  "a1b10.jpg",  "a10b1.jpg",  "b.jpg"};
+  for (const std::string& name : in_order) folder.write(name, "x");
+  std::vector<std::string> found;
+  for (const auto& path : pictures_in(folder.path())) found.push_back(path.filename().string());
+  EXPECT_EQ(found, in_order);
+}
+
 TEST(CalibrationImages, NameTheKindThatFillsAFolder) {
   const TemporaryFolder folder;
   folder.write("IMG_1.HEIC", "x");

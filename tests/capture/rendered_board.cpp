@@ -96,6 +96,12 @@ std::vector<cv::Point2d> undistort_lattice(const core::CameraModel& camera) {
     for (int x = 0; x <= camera.width_px(); ++x) pixels.emplace_back(x - 0.5, y - 0.5);
   }
   std::vector<cv::Point2d> ideal;
+  if (camera.intrinsics().lens == core::LensKind::fisheye) {
+    std::vector<double> k = distortion(camera);
+    k.resize(4);
+    cv::fisheye::undistortPoints(pixels, ideal, camera_matrix(camera), k);
+    return ideal;
+  }
   cv::undistortPoints(
       pixels, ideal, camera_matrix(camera), distortion(camera), cv::noArray(), cv::noArray(),
       cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 100, 1e-10));

@@ -98,6 +98,66 @@ std::vector<int> range(int begin, int end) {
   return numbers;
 }
 
+TEST(Session, SaysWhatIsWrongWithItsText) {
+  const SessionFiles files;
+  const std::string text = files.document.dump();
+  const auto refuse = [&](const std::string& by, const std::string& cause) {
+    files.write("session.json", by);
+    expect_bad_input([&] { static_cast<void>(open_session(files.folder())); }, "session.json",
+                     cause);
+  };
+  refuse("", "is empty");
+  refuse("{\"version\": 1, " + text.substr(1), "\"version\" twice");
+  refuse("{\"size\": 1e400, " + text.substr(1), "too large");
+}
+
+TEST(Session, PathsOfWindowsAreRead) {
+  SessionFiles files;
+  std::filesystem::create_directories(files.folder() / "meshes");
+  std::filesystem::rename(files.folder() / "object.ply", files.folder() / "meshes" / "toy.ply");
+  files.document["object"]["mesh"] = "meshes\\toy.ply";
+  EXPECT_EQ(files.open().mesh, files.folder() / "meshes/toy.ply");
+  files.document["object"]["mesh"] = "meshes\\..\\..\\toy.ply";
+  files.expect_refused("leaves the session folder");
+  files.document["object"]["mesh"] = "meshes/Toy.PLY";
+  files.expect_refused("the folder holds toy.ply");
+}
+
+TEST(Session, ImagesOfOtherNamesAreToldWithTheirPattern) {
+  SessionFiles files;
+  files.write_images(0, 3);
+  const auto refuse = [&](const std::string& pattern, const std::string& word) {
+    files.document["frames"]["images"] = pattern;
+    expect_bad_input([&] { open_frames(files.open()); }, word);
+  };
+  refuse("images/%04d.jpg", "write \"images\": \"images/%04d.png\"");
+  refuse("images/%d.png", "images/%04d.png");
+  refuse("pictures/%04d.png", "no such folder");
+  for (int i = 0; i < 3; ++i) {
+    std::filesystem::rename(files.image_path(i),
+                            files.folder() / "images" / ("IMG_" + std::to_string(98 + i) + ".PNG"));
+  }
+  refuse("images/%04d.png", "images/IMG_%d.PNG");
+  refuse("images/IMG_%d.PNG", "IMG_98.PNG: is the first image");
+}
+
+TEST(Session, DoubtfulCamerasAreNoted) {
+  SessionFiles files;
+  const auto warnings = [&](double cx, double cy, double p1) {
+    core::CameraModel::Intrinsics lens = make_camera(kWidth, kHeight, false).intrinsics();
+    lens.principal_px = {cx, cy};
+    lens.distortion[2] = p1;
+    write_camera(files.folder() / "camera.yaml", core::CameraModel(lens));
+    std::string all;
+    for (const std::string& warning : files.open().warnings) all += warning;
+    return all;
+  };
+  EXPECT_EQ(warnings(33, 22, 0.002), "");
+  EXPECT_NE(warnings(16, 40, 0).find("principal point"), std::string::npos);
+  EXPECT_NE(warnings(23.5, 37, 0).find("cx and cy exchanged"), std::string::npos);
+  EXPECT_NE(warnings(33, 22, 0.08).find("order of the coefficients"), std::string::npos);
+}
+
 TEST(Session, ReadsACompleteOne) {
   SessionFiles files;
   files.document["frames"]["fps"] = 15;
@@ -230,7 +290,7 @@ INSTANTIATE_TEST_SUITE_P(FirstNumber, ImagesFrom, testing::Values(0, 1));
 TEST(Images, AreRefusedWhereOneIsMissingBrokenOrOfAnotherSize) {
   const SessionFiles files;
   const Session session = files.open();
-  expect_bad_input([&] { open_frames(session); }, "0000.png");
+  expect_bad_input([&] { open_frames(session); }, "images", "no such folder");
   files.write_images(0, 6);
   std::filesystem::remove(files.image_path(2));
   expect_bad_input([&] { open_frames(session); }, "0002.png", "missing");

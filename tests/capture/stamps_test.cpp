@@ -93,10 +93,51 @@ TEST(Stamps, CountsFromOneAreSaid) {
   const Trajectory from_one(entries);
   ASSERT_TRUE(shifted_stamps(from_one, 40));
   EXPECT_NE(shifted_stamps(from_one, 40)->fault.find("1 to 40"), std::string::npos);
-  // Frame 0 may simply have no pose in a recording of 41.
+  // Frame 0 may simply have no pose in a recording of 41: that is a doubt.
   EXPECT_FALSE(shifted_stamps(from_one, 41));
+  const FrameSpan span{.count = 41, .first_index = 0, .last_index = 40};
+  EXPECT_TRUE(miscounting_stamps(from_one, span, 0));
+  // Lost poses leave the count from 1 visible at the end.
+  entries.erase(entries.begin(), entries.begin() + 3);
+  entries.erase(entries.begin() + 5);
+  EXPECT_TRUE(shifted_stamps(Trajectory(entries), 40));
+  // Only images that are numbered from 1 themselves make a later beginning doubtful.
+  EXPECT_FALSE(miscounting_stamps(Trajectory(entries), span, 0));
+  EXPECT_TRUE(miscounting_stamps(Trajectory(entries), span, 1));
   for (auto& entry : entries) entry.stamp -= 1;
   EXPECT_FALSE(shifted_stamps(Trajectory(entries), 40));
+}
+
+TEST(Stamps, CountsOfKeyFramesAreDoubtful) {
+  const FrameSpan span{.count = 90, .first_index = 0, .last_index = 89, .first_s = 0, .last_s = 3};
+  std::vector<Trajectory::Entry> counts, frames;
+  for (const int frame : {0, 4, 9, 17, 22, 40, 61, 88}) {
+    counts.push_back({static_cast<double>(counts.size())});
+    frames.push_back({static_cast<double>(frame)});
+  }
+  ASSERT_TRUE(miscounting_stamps(Trajectory(counts), span, 0));
+  EXPECT_NE(miscounting_stamps(Trajectory(counts), span, 0)->remedy.find("key frames"),
+            std::string::npos);
+  // The frames' own numbers are right, however sparse.
+  EXPECT_FALSE(miscounting_stamps(Trajectory(frames), span, 0));
+  EXPECT_FALSE(stamps_outside(Trajectory(frames), span));
+}
+
+TEST(Stamps, PosesOfNoFrameAreTold) {
+  const FrameSpan span{.count = 91, .first_index = 0, .last_index = 90, .first_s = 0, .last_s = 3};
+  const auto outside = [&](double step, double shift, Stamps kind) {
+    std::vector<Trajectory::Entry> entries;
+    for (int i = 0; i <= 90; ++i) entries.push_back({shift + step * i});
+    return stamps_outside(Trajectory(entries, kind), span);
+  };
+  EXPECT_FALSE(outside(1 / 30.0, 0, Stamps::seconds));
+  EXPECT_FALSE(outside(1 / 29.97, 0, Stamps::seconds));
+  EXPECT_TRUE(outside(1 / 25.0, 0, Stamps::seconds));
+  EXPECT_TRUE(outside(1 / 30.0, 0.5, Stamps::seconds));
+  EXPECT_FALSE(outside(1, 0, Stamps::indices));
+  const auto doubled = outside(2, 0, Stamps::indices);
+  ASSERT_TRUE(doubled);
+  EXPECT_NE(doubled->fault.find("45 of its 91 poses"), std::string::npos) << doubled->fault;
 }
 
 TEST(Stamps, SecondsThatCountFramesAreTold) {

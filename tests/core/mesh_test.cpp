@@ -147,6 +147,14 @@ TEST(ReadMesh, NamesWhatAFileIsWhateverItsEnding) {
   EXPECT_NE(refusal("a.ply", "glTF binary").find(".glb"), std::string::npos);
   EXPECT_NE(refusal("b.obj", "ply\nformat ascii 1.0\n").find(".ply"), std::string::npos);
   EXPECT_NE(refusal("a.glb", "{\"asset\": {}}").find("glTF text"), std::string::npos);
+  EXPECT_NE(refusal("c.obj", "<!DOCTYPE html><title>Sign in</title>").find("web page"),
+            std::string::npos);
+  EXPECT_NE(refusal("c.ply", "version https://git-lfs.github.com/spec/v1\n").find("git lfs pull"),
+            std::string::npos);
+  std::string stl(84 + 2 * 50, '\0');
+  stl[80] = 2;
+  EXPECT_NE(refusal("d.ply", stl).find("STL"), std::string::npos);
+  EXPECT_NE(refusal("e.obj", "# nothing\n").find("no vertex"), std::string::npos);
 }
 
 TEST(ReadMesh, TurnsAClosedSurfaceThatIsInsideOut) {
