@@ -56,16 +56,16 @@ std::vector<PosedImage> spread_images(const capture::Session& session, const Fra
 
 }  // namespace
 
-MeshRefinement refine_mesh_heights(const capture::Session& session, const core::Mesh& mesh,
-                                   const FrameChoice& choice, PoseStage& poses, int threads,
-                                   ProgressSink& sink) {
+MeshRefinement refine_mesh_heights(const core::Mesh& mesh, const std::vector<PosedImage>& images,
+                                   int threads, ProgressSink& sink) {
   std::vector<PosedImage> views, check_views;
   std::vector<Eigen::Isometry3d> from;
-  for (PosedImage& image :
-       spread_images(session, choice, most_views(session.camera), poses, sink)) {
+  const std::size_t count = std::min(kMostStills, images.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const PosedImage& image = images[i * images.size() / count];
     from.push_back(image.camera_from_object);
     const bool is_check = from.size() % kCheckEvery == kCheckEvery / 2;
-    (is_check ? check_views : views).push_back(std::move(image));
+    (is_check ? check_views : views).push_back(image);
   }
   MeshRefinement result{.mesh = mesh, .views = views.size(), .check_views = check_views.size()};
   if (views.size() < 2 || check_views.empty()) {
@@ -74,7 +74,7 @@ MeshRefinement refine_mesh_heights(const capture::Session& session, const core::
     return result;
   }
   const double texel_m = pixel_footprint_m(from, core::bounds_of(mesh).center().cast<double>(),
-                                           session.camera.intrinsics().focal_px.x());
+                                           views[0].camera->intrinsics().focal_px.x());
   auto refined = fitting::heights::refine_heights(
       mesh, views, check_views, static_cast<float>(texel_m), threads, [&](int done, int all) {
         sink.progress({"refining the mesh", done, all});
@@ -87,6 +87,13 @@ MeshRefinement refine_mesh_heights(const capture::Session& session, const core::
   result.median_mm = 1000 * refined.median_m;
   result.residual_change = refined.change();
   return result;
+}
+
+MeshRefinement refine_mesh_heights(const capture::Session& session, const core::Mesh& mesh,
+                                   const FrameChoice& choice, PoseStage& poses, int threads,
+                                   ProgressSink& sink) {
+  return refine_mesh_heights(
+      mesh, spread_images(session, choice, most_views(session.camera), poses, sink), threads, sink);
 }
 
 }  // namespace sheen::pipeline

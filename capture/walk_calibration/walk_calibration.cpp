@@ -27,13 +27,14 @@ constexpr double kMostHeightSigma = 0.1;
 constexpr double kMostRmsPx = 3;
 constexpr std::array<double, 3> kStarts{1.0, 0.6, 1.7};  // of the prior's focal length
 
-constexpr int kNumbers = 8;
-constexpr std::array<std::string_view, kNumbers> kNames{"focal", "k1",     "cx", "cy",
+constexpr int kNumbers = 9;
+constexpr std::array<std::string_view, kNumbers> kNames{"focal", "edges",  "k1", "cx", "cy",
                                                         "k2",    "aspect", "p1", "p2"};
-constexpr std::array<int, kNumbers> kGroups{0, 1, 2, 2, 3, 4, 5, 5};  // kept or left together
-constexpr int kGroupCount = 6;
+constexpr std::array<int, kNumbers> kGroups{0, 1, 2, 3, 3, 4, 5, 6, 6};  // kept or left together
+constexpr int kGroupCount = 7;
 constexpr int kFocal = 0;
-constexpr int kAspect = 5;
+constexpr int kEdges = 1;
+constexpr int kAspect = 6;
 using Lens = std::array<double, kNumbers>;
 using LensMatrix = Eigen::Matrix<double, kNumbers, kNumbers>;
 using LensVector = Eigen::Matrix<double, kNumbers, 1>;
@@ -44,26 +45,26 @@ void expand(const T* lens, T* full) {
   using std::exp;
   const T focal = exp(lens[kFocal]);
   const std::array<T, 12> all{focal,   focal * lens[kAspect],
-                              lens[2], lens[3],
-                              lens[1], lens[4],
-                              lens[6], lens[7],
+                              lens[3], lens[4],
+                              lens[2], lens[5],
+                              lens[7], lens[8],
                               T(0),    T(0),
                               T(0),    T(0)};
   std::copy(all.begin(), all.end(), full);
 }
 
-/// expand's derivative: 12 x 8.
+/// expand's derivative: 12 x 9.
 Eigen::Matrix<double, 12, kNumbers> expansion_derivative(const Lens& lens) {
   Eigen::Matrix<double, 12, kNumbers> D = Eigen::Matrix<double, 12, kNumbers>::Zero();
   const double focal = std::exp(lens[kFocal]);
   D(0, kFocal) = focal;
   D(1, kFocal) = focal * lens[kAspect];
   D(1, kAspect) = focal;
-  D(2, 2) = D(3, 3) = D(4, 1) = D(5, 4) = D(6, 6) = D(7, 7) = 1;
+  D(2, 3) = D(3, 4) = D(4, 2) = D(5, 5) = D(6, 7) = D(7, 8) = 1;
   return D;
 }
 
-/// What is believed beforehand: values and standard deviations of the eight numbers.
+/// What is believed beforehand: values and standard deviations of the numbers.
 struct Belief {
   Lens value;
   Lens sigma;
@@ -71,9 +72,10 @@ struct Belief {
 
 Belief belief_of(const LensPrior& prior) {
   const double longer_px = std::max(prior.size.width_px, prior.size.height_px);
-  return {{std::log(prior.focal_px), 0, 0.5 * (prior.size.width_px - 1),
-           0.5 * (prior.size.height_px - 1), 0, 1, 0, 0},
-          {prior.focal_sigma, 0.3, 0.03 * longer_px, 0.03 * longer_px, 0.5, 0.01, 0.005, 0.005}};
+  return {
+      {std::log(prior.focal_px), 0, 0, 0.5 * (prior.size.width_px - 1),
+       0.5 * (prior.size.height_px - 1), 0, 1, 0, 0},
+      {prior.focal_sigma, 0.3, 0.3, 0.03 * longer_px, 0.03 * longer_px, 0.5, 0.01, 0.005, 0.005}};
 }
 
 core::CameraModel camera_of(const Lens& lens, const ImageSize& size) {
@@ -85,11 +87,32 @@ core::CameraModel camera_of(const Lens& lens, const ImageSize& size) {
   return camera_with(full, core::CameraModel(intrinsics));
 }
 
+/// How the corners of a tag move when each of its sides moves outwards by a pixel.
+Eigen::Matrix<double, 8, 1> corners_by_edges(const TagDetection& tag) {
+  const auto& corners = tag.corners_px;
+  const Eigen::Vector2d centre = (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
+  std::array<Eigen::Vector2d, 4> outward;  // of the side from each corner to the next
+  for (std::size_t c = 0; c < 4; ++c) {
+    const Eigen::Vector2d along = (corners[(c + 1) % 4] - corners[c]).normalized();
+    outward[c] = {along.y(), -along.x()};
+    if (outward[c].dot(corners[c] - centre) < 0) outward[c] = -outward[c];
+  }
+  Eigen::Matrix<double, 8, 1> moves;
+  for (std::size_t c = 0; c < 4; ++c) {
+    const Eigen::Vector2d& before = outward[(c + 3) % 4];
+    // The point that is one pixel beyond both sides; flat corners are seen too obliquely to tell.
+    const double turn = std::max(0.1, 1 + before.dot(outward[c]));
+    moves.segment<2>(static_cast<Eigen::Index>(2 * c)) = (before + outward[c]) / turn;
+  }
+  return moves;
+}
+
 /// A tag's corners by pose and lens; the board lies fixed.
 class WalkResidual final : public ceres::SizedCostFunction<8, 6, kNumbers> {
  public:
   WalkResidual(const TagDetection& seen, const Board::Tag& tag)
       : board_from_tag_(to_parameters(tag.board_from_tag)),
+        by_edges_(corners_by_edges(seen)),
         full_(tag_and_lens_residual(core::LensKind::rational, seen, tag.size_m)) {}
 
   bool Evaluate(double const* const* parameters, double* residuals,
@@ -99,20 +122,22 @@ class WalkResidual final : public ceres::SizedCostFunction<8, 6, kNumbers> {
     LensParameters full{};
     expand(lens.data(), full.data());
     const double* const all[] = {parameters[0], board_from_tag_.data(), full.data()};
-    if (jacobians == nullptr) return full_->Evaluate(all, residuals, nullptr);
     by_lens_.resize(8, 12);
-    double* wanted[] = {jacobians[0], nullptr, by_lens_.data()};
-    if (!full_->Evaluate(all, residuals, wanted)) return false;
-    if (jacobians[1] != nullptr) {
+    double* wanted[] = {jacobians != nullptr ? jacobians[0] : nullptr, nullptr, by_lens_.data()};
+    if (!full_->Evaluate(all, residuals, jacobians != nullptr ? wanted : nullptr)) return false;
+    Eigen::Map<Eigen::Matrix<double, 8, 1>>(residuals) += lens[kEdges] * by_edges_;
+    if (jacobians != nullptr && jacobians[1] != nullptr) {
       using ByLens = Eigen::Matrix<double, 8, kNumbers, Eigen::RowMajor>;
       Eigen::Map<ByLens> by_numbers(jacobians[1]);
       by_numbers = by_lens_ * expansion_derivative(lens);
+      by_numbers.col(kEdges) = by_edges_;
     }
     return true;
   }
 
  private:
   Parameters board_from_tag_;
+  Eigen::Matrix<double, 8, 1> by_edges_;
   std::unique_ptr<ceres::CostFunction> full_;
   mutable Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> by_lens_;
 };

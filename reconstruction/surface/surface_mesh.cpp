@@ -7,8 +7,8 @@
 #include "reconstruction/refine/rims.h"
 #include "reconstruction/surface/marching_tetrahedra.h"
 #include "reconstruction/surface/remesh.h"
-#include "reconstruction/surface/self_intersection.h"
 #include "reconstruction/surface/triangle_tree.h"
+#include "reconstruction/surface/untangle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -25,7 +25,6 @@ constexpr float kRimReach_px = 3;
 constexpr float kLargestStep = 0.5F;  // of an edge, in one round
 constexpr NormalFilter kFilter{.rounds = 8, .turn = 0.35F};
 constexpr DisplacementWeights kWeights{.rims = 1, .smoothness = 1, .stay = 0.02F};
-constexpr int kUntangleRounds = 24;
 constexpr float kFallbackCell = 1.8F;  // of an edge: as many triangles as remeshing makes
 
 double area_of(const core::Mesh& mesh) {
@@ -109,42 +108,6 @@ DistanceGrid resampled(const DistanceGrid& grid, float cell_m) {
   DistanceGrid coarse(grid.box(), cell_m, 0);
   for (std::size_t i = 0; i < coarse.count(); ++i) coarse[i] = grid.value_at(coarse.point(i));
   return coarse;
-}
-
-/// Moves vertices of triangles that cross each other to the middle of their neighbours; false where
-/// that does not part them.
-bool untangle(core::Mesh& mesh, int threads) {
-  for (int round = 0; round < kUntangleRounds; ++round) {
-    const auto pairs = find_self_intersections(mesh, threads);
-    if (pairs.empty()) return true;
-    std::vector<std::uint8_t> tangled(mesh.positions.size(), 0);
-    for (const auto& [s, t] : pairs) {
-      for (int c = 0; c < 3; ++c) {
-        tangled[mesh.triangles[s][c]] = 1;
-        tangled[mesh.triangles[t][c]] = 1;
-      }
-    }
-    // Those that do not come apart need more room.
-    for (int ring = 0; ring < round / 3; ++ring) {
-      const std::vector<std::uint8_t> before = tangled;
-      for (const auto& t : mesh.triangles) {
-        for (int c = 0; c < 3; ++c) tangled[t[c]] |= before[t[(c + 1) % 3]];
-      }
-    }
-    std::vector<Eigen::Vector3f> sum(mesh.positions.size(), Eigen::Vector3f::Zero());
-    std::vector<float> count(mesh.positions.size(), 0);
-    for (const auto& t : mesh.triangles) {
-      for (int c = 0; c < 3; ++c) {
-        sum[t[c]] += mesh.positions[t[(c + 1) % 3]];
-        count[t[c]] += 1;
-      }
-    }
-    for (std::size_t i = 0; i < tangled.size(); ++i) {
-      if (tangled[i] != 0) mesh.positions[i] = sum[i] / count[i];
-    }
-    recompute_normals(mesh);
-  }
-  return find_self_intersections(mesh, threads).empty();
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <ranges>
 
 namespace sheen::capture::test {
 namespace {
@@ -87,6 +88,36 @@ TEST(WalkCalibration, FindsAKnownLensWithinItsDeviations) {
     }
     EXPECT_LT(number(*found, "focal").sigma, 0.01 * 900);
     // Two residuals a corner of kNoisePx each.
+    EXPECT_NEAR(found->rms_px, std::sqrt(2) * kNoisePx, 0.1 * kNoisePx);
+  }
+}
+
+// Codes are not light, and ink spreads: every black square may look larger or smaller by the same
+// part of a pixel. Corners then move along their diagonals, which a lens would be blamed for.
+TEST(WalkCalibration, SquaresThatLookTooSmallOrTooLargeDoNotBendTheLens) {
+  const auto truth = camera_like(900, -0.1, {14, -9});
+  for (const double edges_px : {-0.2, 0.15}) {
+    SCOPED_TRACE(edges_px);
+    auto views = walk_round(sheet(), truth, 40, 35, 65, 7);
+    for (TagDetection& tag : views | std::views::join) {
+      const auto seen = tag.corners_px;
+      for (std::size_t c = 0; c < 4; ++c) {
+        // The point that lies so far beyond both of its sides.
+        const Eigen::Vector2d to_next = (seen[c] - seen[(c + 1) % 4]).normalized();
+        const Eigen::Vector2d to_last = (seen[c] - seen[(c + 3) % 4]).normalized();
+        const double sine = std::abs(to_next.x() * to_last.y() - to_next.y() * to_last.x());
+        tag.corners_px[c] += edges_px / sine * (to_next + to_last);
+      }
+    }
+    const auto found = calibrate_from_walk(sheet(), guessed_lens({1280, 720}), views);
+    ASSERT_TRUE(found);
+    const std::pair<const char*, double> known[] = {
+        {"focal", 900}, {"edges", edges_px}, {"k1", -0.1}, {"cx", 653.5}, {"cy", 350.5}};
+    for (const auto& [name, value] : known) {
+      const auto& estimate = number(*found, name);
+      EXPECT_TRUE(estimate.is_kept) << name;
+      EXPECT_NEAR(estimate.value, value, 4 * estimate.sigma) << name;
+    }
     EXPECT_NEAR(found->rms_px, std::sqrt(2) * kNoisePx, 0.1 * kNoisePx);
   }
 }

@@ -5,6 +5,7 @@
 #include "reconstruction/surface/remesh.h"
 #include "reconstruction/surface/self_intersection.h"
 #include "reconstruction/surface/triangle_tree.h"
+#include "reconstruction/surface/untangle.h"
 
 #include <gtest/gtest.h>
 
@@ -123,6 +124,34 @@ TEST(SelfIntersection, IsFoundWhereTwoBallsCross) {
     EXPECT_LT(a, one.triangles.size());
     EXPECT_GE(b, one.triangles.size());
   }
+}
+
+// Some vertices of a ball are pushed by several edges: its triangles cross. They are parted,
+// the ball is still one, and what crosses nowhere stays to the bit.
+TEST(Untangle, PartsTrianglesThatCrossAndLeavesOthers) {
+  const core::Mesh start = march_tetrahedra(grid_of(ball, 0.2F));
+  const TriangleTree tree(start);
+  const core::Mesh round =
+      remesh(start, 0.16F, 4, [&](const Eigen::Vector3f& p) { return tree.closest(p).point; });
+  core::Mesh same = round;
+  EXPECT_TRUE(untangle(same, 1));
+  EXPECT_EQ(same.positions, round.positions);
+  EXPECT_EQ(same.normals, round.normals);
+
+  core::Mesh crossed = round;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> push(-0.6F, 0.6F);
+  for (std::size_t i = 0; i < crossed.positions.size(); i += 10) {
+    crossed.positions[i] += Eigen::Vector3f(push(random), push(random), push(random));
+  }
+  ASSERT_FALSE(find_self_intersections(crossed, 1).empty());
+  core::Mesh parted = crossed;
+  ASSERT_TRUE(untangle(parted, 1));
+  EXPECT_TRUE(find_self_intersections(parted, 1).empty());
+  EXPECT_TRUE(is_closed_manifold(parted));
+  EXPECT_NEAR(volume_of(parted), volume_of(round), 0.05 * volume_of(round));
+  ASSERT_TRUE(untangle(crossed, 3));
+  EXPECT_EQ(crossed.positions, parted.positions);
 }
 
 TEST(TriangleTree, AgreesWithAskingEveryTriangle) {
