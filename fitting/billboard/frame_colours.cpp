@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/billboard/frame_colours.h"
 
-#include "fitting/texture/surface_texture.h"
-
 #include <cstddef>
 
 namespace sheen::fitting::billboard {
 
 PatchColours::PatchColours(const core::Mesh& mesh, const std::vector<core::TangentFrame>& frames,
                            const PatchLightField& light_field)
-    : mesh_(mesh), frames_(frames), light_field_(light_field), colours_(mesh.positions.size()) {}
+    : mesh_(mesh),
+      frames_(frames),
+      light_field_(light_field),
+      between_(dynamic_cast<const BetweenPatches*>(&light_field)),
+      colours_(mesh.positions.size()) {}
 
 /// Evaluates the patches that the frame needs.
 void PatchColours::look_from(const FrameCamera& camera, std::span<const std::uint8_t> needed) {
+  camera_ = camera;
   for (std::size_t i = 0; i < needed.size(); ++i) {
     if (needed[i] == 0) continue;
     const Eigen::Vector3f& position = mesh_.positions[i];
@@ -30,8 +33,12 @@ WeightedColour PatchColours::at(const SurfacePoint& point, const cv::Point& /*fi
     sums.colour_sum += weight[corner] * colours_[vertex[corner]].colour_sum;
     sums.weight_sum += weight[corner] * colours_[vertex[corner]].weight_sum;
   }
-  if (const SurfaceTexture* const texture = light_field_.texture_between_patches()) {
-    sums.colour_sum += sums.weight_sum * texture->at(point.triangle_idx, weight);
+  if (between_ != nullptr) {
+    const Eigen::Vector3f place = weight[0] * mesh_.positions[vertex[0]] +
+                                  weight[1] * mesh_.positions[vertex[1]] +
+                                  weight[2] * mesh_.positions[vertex[2]];
+    const Eigen::Vector3f w = (camera_->viewer_of(place) - place).normalized();
+    sums.colour_sum += sums.weight_sum * between_->between_patches(point.triangle_idx, weight, w);
   }
   return sums;
 }

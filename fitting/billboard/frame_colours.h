@@ -3,6 +3,7 @@
 
 #include "core/geometry/tangent_frame.h"
 #include "core/mesh/mesh.h"
+#include "fitting/between_patches.h"
 #include "fitting/billboard/frame.h"
 #include "fitting/patch_light_field.h"
 
@@ -10,6 +11,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -48,6 +50,8 @@ class PatchColours final : public FrameColours {
   const core::Mesh& mesh_;
   const std::vector<core::TangentFrame>& frames_;
   const PatchLightField& light_field_;
+  const BetweenPatches* between_;  ///< null: nothing
+  std::optional<FrameCamera> camera_;
   std::vector<WeightedColour> colours_;
 };
 

@@ -3,44 +3,111 @@
 
 #include "core/geometry/disc_map.h"
 
+#include <algorithm>
 #include <cassert>
+#include <limits>
 #include <utility>
 
 namespace sheen::fitting::detail {
+namespace {
 
-AnchoredOffsets::AnchoredOffsets(const core::Mesh& mesh, AnchorLayout layout, AskedDirection asked,
-                                 sparse::LightFieldModel models)
-    : layout_(std::move(layout)),
+constexpr std::uint32_t kNoCorner = std::numeric_limits<std::uint32_t>::max();
+
+}  // namespace
+
+AnchoredOffsets::AnchoredOffsets(const core::Mesh& mesh, std::vector<AnchorLevel> levels,
+                                 AskedDirection asked, sparse::LightFieldModel models)
+    : mesh_(mesh),
+      levels_(std::move(levels)),
       asked_(asked),
       models_(std::move(models)),
-      blends_(blend_anchors(mesh, layout_.vertices, layout_.spacing_m)),
-      normals_(mesh.normals) {
-  assert(models_.patch_count() == layout_.vertices.size());
+      first_{0},
+      before_{0},
+      corner_of_(mesh.positions.size(), kNoCorner) {
+  std::vector<std::vector<AnchorBlend>> of_levels;
+  for (const AnchorLevel& level : levels_) {
+    of_levels.push_back(blend_anchors(mesh, level.vertices, level.spacing_m));
+    first_.push_back(first_.back() + level.vertices.size());
+    for (const std::uint32_t vertex : level.vertices) {
+      frames_.push_back(core::tangent_frame(mesh.normals[vertex]));
+    }
+  }
+  assert(models_.patch_count() == first_.back());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t l = 0; l < levels_.size(); ++l) {
+      const std::size_t begin = blends_.size();
+      for (std::uint32_t corner = 0; corner < 3; ++corner) {
+        const std::uint32_t vertex = mesh.triangles[t][corner];
+        corner_of_[vertex] = 3 * t + corner;
+        const AnchorBlend& blend = of_levels[l][vertex];
+        for (std::size_t i = 0; i < kMostBlended && blend.weight[i] > 0.0f; ++i) {
+          const auto anchor = static_cast<std::uint32_t>(first_[l] + blend.anchor[i]);
+          auto at =
+              std::find_if(blends_.begin() + static_cast<std::ptrdiff_t>(begin), blends_.end(),
+                           [&](const CornerWeights& other) { return other.anchor == anchor; });
+          if (at == blends_.end()) at = blends_.insert(blends_.end(), CornerWeights{anchor, {}});
+          at->weight[corner] = blend.weight[i];
+        }
+      }
+      std::sort(blends_.begin() + static_cast<std::ptrdiff_t>(begin), blends_.end(),
+                [](const auto& a, const auto& b) { return a.anchor < b.anchor; });
+    }
+    before_.push_back(static_cast<std::uint32_t>(blends_.size()));
+  }
 }
 
-Eigen::Vector3f AnchoredOffsets::colour(std::size_t vertex, const Eigen::Vector2f& uv) const {
+Eigen::Vector3f AnchoredOffsets::colour(std::size_t triangle, const Eigen::Vector3f& barycentric,
+                                        const Eigen::Vector3f& w) const {
+  return colour_of(0, first_.back(), triangle, barycentric, w);
+}
+
+Eigen::Vector3f AnchoredOffsets::colour_of_level(std::size_t level, std::size_t triangle,
+                                                 const Eigen::Vector3f& barycentric,
+                                                 const Eigen::Vector3f& w) const {
+  return colour_of(first_[level], first_[level + 1], triangle, barycentric, w);
+}
+
+Eigen::Vector3f AnchoredOffsets::colour_of(std::size_t first, std::size_t end, std::size_t triangle,
+                                           const Eigen::Vector3f& barycentric,
+                                           const Eigen::Vector3f& w) const {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  const AnchorBlend& blend = blends_[vertex];
-  for (std::size_t i = 0; i < kMostBlended && blend.weight[i] > 0.0f; ++i) {
-    if (models_.term_count(blend.anchor[i]) == 1) continue;
-    sum += blend.weight[i] * models_.colour(blend.anchor[i], uv_at(blend.anchor[i], vertex, uv));
+  const Eigen::Vector3f n = normal(triangle, barycentric);
+  for (const CornerWeights& blend : blends(triangle)) {
+    if (blend.anchor < first || blend.anchor >= end) continue;
+    if (models_.term_count(blend.anchor) == 1) continue;
+    sum += blend.at(barycentric) * models_.colour(blend.anchor, uv_at(blend.anchor, n, w));
   }
   return sum;
 }
 
-// Mirroring at the vertex, less the sign: -r = w - 2 (n . w) n; mirroring at the anchor turns it
-// once more and leaves -r on its tangent plane.
-Eigen::Vector2f AnchoredOffsets::uv_at(std::size_t anchor, std::size_t vertex,
-                                       const Eigen::Vector2f& uv) const {
-  const core::TangentFrame seen = core::tangent_frame(normals_[vertex]);
-  const core::TangentFrame frame = core::tangent_frame(normals_[layout_.vertices[anchor]]);
+Eigen::Vector3f AnchoredOffsets::colour_at(std::size_t vertex, const Eigen::Vector2f& uv) const {
+  if (corner_of_[vertex] == kNoCorner) return Eigen::Vector3f::Zero();
+  const core::TangentFrame frame = core::tangent_frame(mesh_.normals[vertex]);
   const Eigen::Vector3f local = core::hemisphere_from_disc(uv);
+  return colour(corner_of_[vertex] / 3, Eigen::Vector3f::Unit(corner_of_[vertex] % 3),
+                local.x() * frame.tangent + local.y() * frame.bitangent + local.z() * frame.normal);
+}
+
+// Mirroring at the place, less the sign: -r = w - 2 (n . w) n; mirroring at the anchor turns it
+// once more and leaves -r on its tangent plane.
+Eigen::Vector2f AnchoredOffsets::uv_at(std::size_t anchor, const Eigen::Vector3f& n,
+                                       const Eigen::Vector3f& w) const {
+  const core::TangentFrame& frame = frames_[anchor];
   const float side = asked_ == AskedDirection::mirrored ? -1.0f : 1.0f;
-  const Eigen::Vector3f w =
-      local.x() * seen.tangent + local.y() * seen.bitangent + side * local.z() * seen.normal;
-  const Eigen::Vector2f at(w.dot(frame.tangent), w.dot(frame.bitangent));
+  const Eigen::Vector3f v = side < 0.0f ? Eigen::Vector3f(w - 2.0f * n.dot(w) * n) : w;
+  const Eigen::Vector2f at(v.dot(frame.tangent), v.dot(frame.bitangent));
   // Behind the anchor's horizon: on the rim.
-  return side * w.dot(frame.normal) < 0.0f && at.squaredNorm() > 0.0f ? at.normalized() : at;
+  return side * v.dot(frame.normal) < 0.0f && at.squaredNorm() > 0.0f ? at.normalized() : at;
+}
+
+Eigen::Vector3f AnchoredOffsets::normal(std::size_t triangle,
+                                        const Eigen::Vector3f& barycentric) const {
+  const auto& corner = mesh_.triangles[triangle];
+  const Eigen::Vector3f sum = barycentric[0] * mesh_.normals[corner[0]] +
+                              barycentric[1] * mesh_.normals[corner[1]] +
+                              barycentric[2] * mesh_.normals[corner[2]];
+  const float length = sum.norm();
+  return length > 1e-6f ? Eigen::Vector3f(sum / length) : mesh_.normals[corner[0]];
 }
 
 }  // namespace sheen::fitting::detail

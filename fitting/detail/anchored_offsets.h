@@ -8,52 +8,92 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace sheen::fitting::detail {
 
-/// Where a vertex asks an anchor for its value: in the direction in which it is seen itself, or in
-/// the one in which the anchor mirrors the same light. With n the vertex's normal, n_a the anchor's
-/// and w the direction, r = 2 (n . w) n - w and w_a = 2 (n_a . r) n_a - r.
+/// Where a place on the surface asks an anchor for its value: in the direction in which it is seen
+/// itself, or in the one in which the anchor mirrors the same light. With n the place's normal, n_a
+/// the anchor's and w the direction, r = 2 (n . w) n - w and w_a = 2 (n_a . r) n_a - r.
 enum class AskedDirection { same, mirrored };
 
 /// Anchors of a mesh: vertices as far apart as `spacing_m` (anchor_layout.h).
-struct AnchorLayout {
+struct AnchorLevel {
   std::vector<std::uint32_t> vertices;  ///< ascending
   float spacing_m = 1;
 };
 
-/// How colours change with the direction, known at anchors and blended in between.
+/// An anchor that the corners of a triangle blend, with these weights.
+struct CornerWeights {
+  std::uint32_t anchor;
+  std::array<float, 3> weight;
+
+  /// The weight at a place on the triangle.
+  [[nodiscard]] float at(const Eigen::Vector3f& barycentric) const {
+    return barycentric[0] * weight[0] + barycentric[1] * weight[1] + barycentric[2] * weight[2];
+  }
+};
+
+/// How colours change with the direction, known at anchors and blended in between: on every level a
+/// place blends what its triangle's corners do, and the levels are added up.
 class AnchoredOffsets {
  public:
-  /// `models` has a patch per anchor, in its vertex's frame; those of one term are zero.
-  AnchoredOffsets(const core::Mesh& mesh, AnchorLayout layout, AskedDirection asked,
+  /// `models` has a patch per anchor, level after level, in its vertex's frame; those of one term
+  /// are zero.
+  AnchoredOffsets(const core::Mesh& mesh, std::vector<AnchorLevel> levels, AskedDirection asked,
                   sparse::LightFieldModel models);
 
-  [[nodiscard]] const AnchorLayout& layout() const { return layout_; }
+  [[nodiscard]] const core::Mesh& mesh() const { return mesh_; }
+  [[nodiscard]] const std::vector<AnchorLevel>& levels() const { return levels_; }
   [[nodiscard]] AskedDirection asked() const { return asked_; }
   [[nodiscard]] const sparse::LightFieldModel& models() const { return models_; }
   [[nodiscard]] sparse::LightFieldModel& models() { return models_; }
-  /// Of every vertex of the mesh.
-  [[nodiscard]] const std::vector<AnchorBlend>& blends() const { return blends_; }
-  [[nodiscard]] const Eigen::Vector3f& normal(std::size_t vertex) const { return normals_[vertex]; }
+  /// The first anchor of a level, or the number of all behind the last.
+  [[nodiscard]] std::size_t first_of(std::size_t level) const { return first_[level]; }
+  /// What the corners of a triangle blend, ascending.
+  [[nodiscard]] std::span<const CornerWeights> blends(std::size_t triangle) const {
+    return std::span(blends_).subspan(before_[triangle], before_[triangle + 1] - before_[triangle]);
+  }
+  [[nodiscard]] const core::TangentFrame& frame(std::size_t anchor) const {
+    return frames_[anchor];
+  }
 
-  /// Offset of a vertex towards `uv` on its disc.
-  [[nodiscard]] Eigen::Vector3f colour(std::size_t vertex, const Eigen::Vector2f& uv) const;
+  /// Offset at a place on a triangle, unit vector `w` towards the viewer.
+  [[nodiscard]] Eigen::Vector3f colour(std::size_t triangle, const Eigen::Vector3f& barycentric,
+                                       const Eigen::Vector3f& w) const;
+  /// The part of it that one level says.
+  [[nodiscard]] Eigen::Vector3f colour_of_level(std::size_t level, std::size_t triangle,
+                                                const Eigen::Vector3f& barycentric,
+                                                const Eigen::Vector3f& w) const;
+  /// Offset of a vertex towards `uv` on its disc; zero of one that no triangle uses.
+  [[nodiscard]] Eigen::Vector3f colour_at(std::size_t vertex, const Eigen::Vector2f& uv) const;
 
-  /// Direction in which an anchor is asked by a vertex that is seen from `uv`, on the anchor's
-  /// disc.
-  [[nodiscard]] Eigen::Vector2f uv_at(std::size_t anchor, std::size_t vertex,
-                                      const Eigen::Vector2f& uv) const;
+  /// Direction in which an anchor is asked where the normal is `n`, on the anchor's disc.
+  [[nodiscard]] Eigen::Vector2f uv_at(std::size_t anchor, const Eigen::Vector3f& n,
+                                      const Eigen::Vector3f& w) const;
+
+  /// Unit normal at a place on a triangle.
+  [[nodiscard]] Eigen::Vector3f normal(std::size_t triangle,
+                                       const Eigen::Vector3f& barycentric) const;
 
  private:
-  AnchorLayout layout_;
+  [[nodiscard]] Eigen::Vector3f colour_of(std::size_t first, std::size_t end, std::size_t triangle,
+                                          const Eigen::Vector3f& barycentric,
+                                          const Eigen::Vector3f& w) const;
+
+  core::Mesh mesh_;
+  std::vector<AnchorLevel> levels_;
   AskedDirection asked_;
   sparse::LightFieldModel models_;
-  std::vector<AnchorBlend> blends_;
-  std::vector<Eigen::Vector3f> normals_;  ///< of the vertices
+  std::vector<std::size_t> first_;
+  std::vector<core::TangentFrame> frames_;
+  std::vector<std::uint32_t> before_;  ///< blends of all triangles before this one
+  std::vector<CornerWeights> blends_;
+  std::vector<std::uint32_t> corner_of_;  ///< of every vertex: 3 triangle + corner, one of them
 };
 
 }  // namespace sheen::fitting::detail

@@ -12,6 +12,7 @@
 #include "fitting/detail/texel_means.h"
 #include "fitting/detail/texture_solver.h"
 #include "fitting/detail/texture_sums.h"
+#include "fitting/detail/triangle_samples.h"
 #include "fitting/detail/vertex_means.h"
 #include "fitting/sparse/sparse_fitter.h"
 
@@ -65,7 +66,13 @@ class DetailFitter final : public Fitter {
         texel_means_(mesh, model_.texture(), threads),
         texture_sums_(mesh, model_.texture().atlas(), threads),
         vertex_means_(mesh, threads),
-        patch_means_(mesh.positions.size()) {}
+        patch_means_(mesh.positions.size()) {
+    if (options.offsets == OffsetPlaces::anchors) {
+      triangle_samples_ = std::make_unique<TriangleSamples>(
+          mesh, texel_means_.surface(), static_cast<std::size_t>(options.patches.max_samples),
+          threads);
+    }
+  }
 
   const ModelUpdate& integrate(const core::Observation& observation) override;
   const ModelUpdate& finish() override;
@@ -94,6 +101,7 @@ class DetailFitter final : public Fitter {
   TextureSums texture_sums_;
   VertexMeans vertex_means_;
   PatchMeans patch_means_;
+  std::unique_ptr<TriangleSamples> triangle_samples_;  ///< with anchors
   core::SampleBatch samples_;
   ModelUpdate update_;
 };
@@ -103,6 +111,7 @@ const ModelUpdate& DetailFitter::integrate(const core::Observation& observation)
   raster_.set_view(observation);
   texel_means_.integrate(observation, raster_, model_.texture());
   texture_sums_.integrate(observation, raster_);
+  if (triangle_samples_) triangle_samples_->integrate(observation, raster_, texel_means_.corners());
   samples_ = observation.samples;
   vertex_means_.average(raster_, texel_means_.corners(), samples_);
   patch_means_.integrate(samples_);
@@ -153,9 +162,10 @@ void DetailFitter::store_all_offsets() {
 
 /// Offsets at anchors in place of those at vertices, and their means out of the texture.
 void DetailFitter::move_to_anchors(Planes& planes) {
-  const FittedAnchors fitted = fit_anchors(
-      mesh_, *patches_, static_cast<float>(options_.anchor_px) * texel_m(mesh_, options_),
-      options_.patches, threads_);
+  const FittedAnchors fitted =
+      fit_anchors(mesh_, *patches_, *triangle_samples_,
+                  static_cast<float>(options_.anchor_px) * texel_m(mesh_, options_),
+                  options_.patches, threads_);
   model_.offsets() = no_offsets(model_.observed());
   model_.set_anchors(fitted.offsets);
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {

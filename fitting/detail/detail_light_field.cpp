@@ -49,6 +49,15 @@ DetailLightField::DetailLightField(const core::Mesh& mesh, SurfaceTexture textur
 WeightedColour DetailLightField::evaluate(std::size_t patch_idx, const Eigen::Vector2f& uv) const {
   WeightedColour colour = interpolated_part(patch_idx, uv);
   colour.colour_sum += colour.weight_sum * texture_.read(place_[patch_idx]);
+  if (anchors_) colour.colour_sum += colour.weight_sum * anchors_->colour_at(patch_idx, uv);
+  return colour;
+}
+
+Eigen::Vector3f DetailLightField::between_patches(std::size_t triangle_idx,
+                                                  const Eigen::Vector3f& barycentric,
+                                                  const Eigen::Vector3f& w) const {
+  Eigen::Vector3f colour = texture_.at(triangle_idx, barycentric);
+  if (anchors_) colour += anchors_->colour(triangle_idx, barycentric, w);
   return colour;
 }
 

@@ -3,6 +3,7 @@
 
 #include "core/atlas/atlas.h"
 #include "core/mesh/mesh.h"
+#include "fitting/between_patches.h"
 #include "fitting/detail/anchored_offsets.h"
 #include "fitting/patch_light_field.h"
 #include "fitting/sparse/light_field_model.h"
@@ -27,7 +28,7 @@ sparse::LightFieldModel no_offsets(std::span<const std::uint8_t> observed);
 /// A light field of two parts that are added up: a texture, the mean colour of every place, and
 /// how the colour differs from it towards every direction: patches, one per vertex, or blended from
 /// anchors.
-class DetailLightField final : public PatchLightField {
+class DetailLightField final : public PatchLightField, public BetweenPatches {
  public:
   /// Mid grey, and the same towards every direction. `atlas` is one of `mesh`.
   DetailLightField(const core::Mesh& mesh, core::Atlas atlas);
@@ -40,10 +41,11 @@ class DetailLightField final : public PatchLightField {
                                         const Eigen::Vector2f& uv) const override;
   [[nodiscard]] WeightedColour interpolated_part(std::size_t patch_idx,
                                                  const Eigen::Vector2f& uv) const override {
-    WeightedColour offset = offsets_.evaluate(patch_idx, uv);
-    if (anchors_) offset.colour_sum += offset.weight_sum * anchors_->colour(patch_idx, uv);
-    return offset;
+    return offsets_.evaluate(patch_idx, uv);
   }
+  [[nodiscard]] Eigen::Vector3f between_patches(std::size_t triangle_idx,
+                                                const Eigen::Vector3f& barycentric,
+                                                const Eigen::Vector3f& w) const override;
   [[nodiscard]] Eigen::Vector3f mean_colour(std::size_t patch_idx) const override;
   [[nodiscard]] const std::vector<std::uint8_t>& observed() const override {
     return offsets_.observed();

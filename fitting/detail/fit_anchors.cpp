@@ -3,9 +3,12 @@
 
 #include "core/concurrency/parallel_for.h"
 #include "fitting/detail/detail_light_field.h"
-#include "fitting/sparse/sample_store.h"
 #include "fitting/sparse/workspaces.h"
 
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cassert>
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -15,197 +18,286 @@
 namespace sheen::fitting::detail {
 namespace {
 
-constexpr int kSweeps = 3;
+/// Of the levels, in spacings of the finest.
+constexpr std::array<float, 2> kSpacings{8.0f / 3.0f, 1.0f};
+/// Levels in the order in which they are fitted.
+constexpr std::array<std::size_t, 7> kSweeps{0, 0, 1, 1, 0, 1, 1};
+/// Part of a patch's tolerance that an anchor minds: the noise of many samples averages out.
+constexpr float kToleranceShare = 0.5f;
 
 sparse::LightFieldModel zeros(std::size_t count) {
   return no_offsets(std::vector<std::uint8_t>(count, 1));
 }
 
-/// Vertices that blend each anchor, ascending.
-class Followers {
- public:
-  Followers(std::span<const AnchorBlend> blends, std::size_t anchor_count)
-      : offsets_(anchor_count + 1, 0) {
-    for_each(blends, [&](std::uint32_t anchor, std::uint32_t) { ++offsets_[anchor + 1]; });
-    std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
-    vertices_.resize(offsets_.back());
-    std::vector<std::size_t> next(offsets_.begin(), offsets_.end() - 1);
-    for_each(blends, [&](std::uint32_t anchor, std::uint32_t vertex) {
-      vertices_[next[anchor]++] = vertex;
-    });
-  }
-  [[nodiscard]] std::span<const std::uint32_t> of(std::size_t anchor) const {
-    return std::span(vertices_).subspan(offsets_[anchor], offsets_[anchor + 1] - offsets_[anchor]);
-  }
-
- private:
-  template <typename Visit>
-  static void for_each(std::span<const AnchorBlend> blends, const Visit& visit) {
-    for (std::uint32_t vertex = 0; vertex < blends.size(); ++vertex) {
-      for (std::size_t i = 0; i < kMostBlended && blends[vertex].weight[i] > 0.0f; ++i) {
-        visit(blends[vertex].anchor[i], vertex);
-      }
-    }
-  }
-
-  std::vector<std::size_t> offsets_;
-  std::vector<std::uint32_t> vertices_;
-};
-
-/// What anchors leave of the samples' differences from the means of their vertices.
+/// Samples of all triangles, and what anchors leave of their differences from the triangles' means.
 class Residuals {
  public:
-  Residuals(const sparse::SparseFitter& patches, int threads)
-      : patches_(patches), threads_(threads), offsets_(1, 0) {
-    for (std::size_t vertex = 0; vertex < patches.light_field().patch_count(); ++vertex) {
-      offsets_.push_back(offsets_.back() + patches.samples_of(vertex).size());
+  struct Sample {
+    Eigen::Vector3f w;
+    float weight;
+    Eigen::Vector3f left;
+    std::array<Eigen::Vector3f, kSpacings.size()> said;  ///< by the anchors of a level
+  };
+
+  Residuals(const TriangleSamples& samples, int threads)
+      : samples_(samples), threads_(threads), offsets_(1, 0) {
+    const Eigen::Vector3f nothing = Eigen::Vector3f::Zero();
+    for (std::size_t triangle = 0; triangle < samples.triangle_count(); ++triangle) {
+      for (const TriangleSample& one : samples.of(triangle)) {
+        left_.push_back({one.w, one.weight, one.rgb, {nothing, nothing}});
+      }
+      offsets_.push_back(left_.size());
     }
-    left_.resize(offsets_.back());
   }
 
-  /// Computes them anew; returns the weighted sum of their squares.
-  double update(const AnchoredOffsets& anchors) {
+  /// After the anchors of a level have changed; returns the weighted sum of squares.
+  double update(const AnchoredOffsets& anchors, std::size_t level) {
     std::vector<double> squared(offsets_.size() - 1, 0.0);
     core::parallel_for(squared.size(), threads_, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t vertex = begin; vertex < end; ++vertex) {
-        squared[vertex] = update(anchors, vertex);
+      for (std::size_t triangle = begin; triangle < end; ++triangle) {
+        squared[triangle] = update(anchors, level, triangle);
       }
     });
     return std::accumulate(squared.begin(), squared.end(), 0.0);
   }
 
-  /// Those of a vertex, in the order of its samples.
-  [[nodiscard]] std::span<const Eigen::Vector3f> of(std::size_t vertex) const {
-    return std::span(left_).subspan(offsets_[vertex], offsets_[vertex + 1] - offsets_[vertex]);
+  [[nodiscard]] std::span<const Sample> of(std::size_t triangle) const {
+    return {left_.data() + offsets_[triangle], offsets_[triangle + 1] - offsets_[triangle]};
   }
 
  private:
-  double update(const AnchoredOffsets& anchors, std::size_t vertex) {
-    Eigen::Vector3f* const left = left_.data() + offsets_[vertex];
-    const std::vector<sparse::KeptSample> samples = patches_.samples_of(vertex);
+  double update(const AnchoredOffsets& anchors, std::size_t level, std::size_t triangle) {
+    const std::span<Sample> samples(left_.data() + offsets_[triangle],
+                                    offsets_[triangle + 1] - offsets_[triangle]);
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     float weight = 0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      left[i] = samples[i].sample.rgb - anchors.colour(vertex, samples[i].sample.uv);
-      sum += samples[i].weight * left[i];
-      weight += samples[i].weight;
+    for (Sample& one : samples) {
+      const Eigen::Vector3f said =
+          anchors.colour_of_level(level, triangle, samples_.middle(triangle), one.w);
+      one.left += std::exchange(one.said[level], said) - said;
+      sum += one.weight * one.left;
+      weight += one.weight;
     }
     if (!(weight > 0.0f)) return 0;
     double squared = 0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      left[i] -= sum / weight;
-      squared += static_cast<double>(samples[i].weight * left[i].squaredNorm());
+    for (Sample& one : samples) {
+      one.left -= sum / weight;
+      squared += static_cast<double>(one.weight * one.left.squaredNorm());
     }
     return squared;
   }
 
-  const sparse::SparseFitter& patches_;
+  const TriangleSamples& samples_;
   int threads_;
   std::vector<std::size_t> offsets_;
-  std::vector<Eigen::Vector3f> left_;
+  std::vector<Sample> left_;
 };
+
+/// A triangle that blends an anchor, and the weight in its middle.
+struct Follower {
+  std::uint32_t triangle;
+  float weight;
+};
+
+/// Those of each anchor, in order.
+std::vector<std::vector<Follower>> followers_of(const AnchoredOffsets& anchors,
+                                                const TriangleSamples& samples) {
+  std::vector<std::vector<Follower>> followers(anchors.models().patch_count());
+  for (std::uint32_t triangle = 0; triangle < samples.triangle_count(); ++triangle) {
+    for (const CornerWeights& blend : anchors.blends(triangle)) {
+      const float weight = blend.at(samples.middle(triangle));
+      if (weight > 0.0f) followers[blend.anchor].push_back({triangle, weight});
+    }
+  }
+  return followers;
+}
+
+/// Cells along a side of grids over the disc of directions, fine to coarse.
+constexpr std::array<int, 9> kGrids{40, 30, 22, 16, 13, 11, 8, 5, 2};
+constexpr std::size_t kMostCells = std::size_t{kGrids[0]} * kGrids[0];
+
+std::size_t cell_at(const Eigen::Vector2f& uv, int grid) {
+  const auto along = [&](float x) {
+    return std::clamp(static_cast<int>(0.5f * (x + 1.0f) * static_cast<float>(grid)), 0, grid - 1);
+  };
+  return static_cast<std::size_t>(along(uv.y()) * grid + along(uv.x()));
+}
+
+/// The finest of which directions touch no more than `most` (>= 4) cells.
+int grid_for(std::span<const Eigen::Vector2f> directions, std::size_t most) {
+  for (const int grid : kGrids) {
+    std::bitset<kMostCells> touched;
+    for (const Eigen::Vector2f& uv : directions) touched.set(cell_at(uv, grid));
+    if (touched.count() <= most) return grid;
+  }
+  return kGrids.back();
+}
 
 /// What all anchors are fitted from.
 struct Given {
   const core::Mesh& mesh;
-  const sparse::SparseFitter& patches;
+  const TriangleSamples& samples;
   const sparse::Options& options;
+  float tolerance;
   int threads;
 };
 
-/// Every anchor anew, towards its own value and what all together left.
-void sweep(const Given& given, const Residuals& residuals, const Followers& followers,
+/// What anchors are asked for, in cells of directions.
+class AskedCells {
+ public:
+  /// Gathers what the followers of an anchor ask it for.
+  void gather(const AnchoredOffsets& anchors, std::size_t anchor,
+              std::span<const Follower> followers, const Given& given, const Residuals& residuals) {
+    uvs_.clear();
+    for (const Follower& follower : followers) {
+      const Eigen::Vector3f n =
+          anchors.normal(follower.triangle, given.samples.middle(follower.triangle));
+      for (const Residuals::Sample& one : residuals.of(follower.triangle)) {
+        uvs_.push_back(anchors.uv_at(anchor, n, one.w));
+      }
+    }
+    const int grid = grid_for(uvs_, static_cast<std::size_t>(given.options.max_samples));
+    cells_.fill({});
+    std::size_t next = 0;
+    for (const Follower& follower : followers) {
+      for (const Residuals::Sample& one : residuals.of(follower.triangle)) {
+        const Eigen::Vector2f& uv = uvs_[next++];
+        // Squared: what lies near an anchor is its own.
+        cells_[cell_at(uv, grid)].add(follower.weight * follower.weight * one.weight, uv, one.left);
+      }
+    }
+  }
+
+  /// A sample for every cell: what the anchor says there itself and what is left.
+  std::span<const sparse::DirectedColour> read(const AnchoredOffsets& anchors, std::size_t anchor,
+                                               std::span<sparse::DirectedColour> samples) const {
+    std::size_t count = 0;
+    for (const Cell& cell : cells_) {
+      if (!(cell.weight > 0.0f)) continue;
+      const Eigen::Vector2f uv = cell.uv / cell.weight;
+      samples[count++] = {uv, anchors.models().colour(anchor, uv) + cell.left / cell.weight};
+    }
+    return samples.first(count);
+  }
+
+ private:
+  /// Weighted sums.
+  struct Cell {
+    float weight = 0;
+    Eigen::Vector2f uv = Eigen::Vector2f::Zero();
+    Eigen::Vector3f left = Eigen::Vector3f::Zero();
+
+    void add(float w, const Eigen::Vector2f& at, const Eigen::Vector3f& colour) {
+      weight += w;
+      uv += w * at;
+      left += w * colour;
+    }
+  };
+
+  std::vector<Eigen::Vector2f> uvs_;
+  std::array<Cell, kMostCells> cells_;
+};
+
+using Models = std::vector<sparse::PatchModel>;
+
+/// Every anchor of a level anew, towards its own value and what all together left.
+void sweep(const Given& given, const Residuals& residuals,
+           const std::vector<std::vector<Follower>>& followers, std::size_t level,
            AnchoredOffsets& anchors) {
-  const std::size_t count = anchors.layout().vertices.size();
-  sparse::LightFieldModel next = zeros(count);
+  const std::size_t first = anchors.first_of(level);
+  Models next(anchors.first_of(level + 1) - first);
   sparse::Workspaces workspaces(given.options);
-  const float tolerance =
-      given.patches.statistics().tolerance.value_or(sparse::kToleranceOfUnknownNoise);
-  const auto most = static_cast<std::size_t>(given.options.max_samples);
   core::parallel_for(
-      count, given.threads,
+      next.size(), given.threads,
       [&](std::size_t begin, std::size_t end) {
-        sparse::SamplePool pool;
-        pool.reserve((end - begin) * (most / sparse::SampleBlock::kSamples + 1));
+        AskedCells cells;
         workspaces.with_one([&](sparse::Workspace& workspace) {
-          workspace.selection.set_tolerance(tolerance);
-          for (std::size_t anchor = begin; anchor < end; ++anchor) {
-            sparse::SampleStore store;
-            for (const std::uint32_t vertex : followers.of(anchor)) {
-              const auto left = residuals.of(vertex);
-              const auto samples = given.patches.samples_of(vertex);
-              for (std::size_t i = 0; i < samples.size(); ++i) {
-                const Eigen::Vector2f uv = anchors.uv_at(anchor, vertex, samples[i].sample.uv);
-                store.add({uv, anchors.models().colour(anchor, uv) + left[i]}, most, pool);
-              }
-            }
-            if (store.size() == 0) continue;
-            const auto chosen = workspace.selection.choose(store.read(pool, workspace.samples));
-            if (chosen.model.term_count() > 1) next.store(anchor, chosen.model);
+          workspace.selection.set_tolerance(given.tolerance);
+          for (std::size_t i = begin; i < end; ++i) {
+            cells.gather(anchors, first + i, followers[first + i], given, residuals);
+            const auto samples = cells.read(anchors, first + i, workspace.samples);
+            if (!samples.empty()) next[i] = workspace.selection.choose(samples).model;
+            if (next[i].term_count() == 1) next[i].coefficient[0].setZero();
           }
         });
       },
       16);
-  anchors.models() = std::move(next);
+  for (std::size_t i = 0; i < next.size(); ++i) anchors.models().store(first + i, next[i]);
 }
 
-/// Anchors after some sweeps.
+/// Anchors and what they leave.
 struct Swept {
   AnchoredOffsets anchors;
-  double squared;  ///< what they leave
+  double squared;
 };
 
-Swept swept(const Given& given, AnchoredOffsets anchors, int sweeps, Residuals& residuals) {
-  const Followers followers(anchors.blends(), anchors.layout().vertices.size());
-  double squared = residuals.update(anchors);
-  for (int i = 0; i < sweeps; ++i) {
-    sweep(given, residuals, followers, anchors);
-    squared = residuals.update(anchors);
+Swept swept(const Given& given, AnchoredOffsets anchors, std::span<const std::size_t> levels,
+            Residuals& residuals) {
+  const auto followers = followers_of(anchors, given.samples);
+  double squared = 0;
+  for (std::size_t level = 0; level < kSpacings.size(); ++level) {
+    squared = residuals.update(anchors, level);
+  }
+  for (const std::size_t level : levels) {
+    sweep(given, residuals, followers, level, anchors);
+    squared = residuals.update(anchors, level);
   }
   return {std::move(anchors), squared};
 }
 
 /// Asked in the directions that leave less after the first sweep.
-AnchoredOffsets fitted(const Given& given, const AnchorLayout& layout, Residuals& residuals) {
+AnchoredOffsets fitted(const Given& given, const std::vector<AnchorLevel>& levels,
+                       Residuals& residuals) {
+  std::size_t count = 0;
+  for (const AnchorLevel& level : levels) count += level.vertices.size();
+  const std::span sweeps(kSweeps);
   const auto first = [&](AskedDirection asked) {
-    return swept(given, {given.mesh, layout, asked, zeros(layout.vertices.size())}, 1, residuals);
+    return swept(given, {given.mesh, levels, asked, zeros(count)}, sweeps.first(1), residuals);
   };
   Swept same = first(AskedDirection::same);
   Swept mirrored = first(AskedDirection::mirrored);
   Swept& better = mirrored.squared < same.squared ? mirrored : same;
-  return swept(given, std::move(better.anchors), kSweeps - 1, residuals).anchors;
+  return swept(given, std::move(better.anchors), sweeps.subspan(1), residuals).anchors;
 }
 
-/// Without those that only blend with zeros.
-std::shared_ptr<const AnchoredOffsets> without_idle(const core::Mesh& mesh,
-                                                    const AnchoredOffsets& anchors) {
-  // Mark what vertices need that differ from zero.
-  const AnchorLayout& layout = anchors.layout();
-  std::vector<std::uint8_t> is_needed(layout.vertices.size(), 0);
-  for (const AnchorBlend& blend : anchors.blends()) {
+/// Anchors of a level that some vertex needs: one that differs from zero needs all that it blends.
+std::vector<std::uint8_t> needed(const core::Mesh& mesh, const AnchoredOffsets& anchors,
+                                 std::size_t level) {
+  const AnchorLevel& all = anchors.levels()[level];
+  std::vector<std::uint8_t> is_needed(all.vertices.size(), 0);
+  for (const AnchorBlend& blend : blend_anchors(mesh, all.vertices, all.spacing_m)) {
     bool differs = false;
     for (std::size_t i = 0; i < kMostBlended && blend.weight[i] > 0.0f; ++i) {
-      differs = differs || anchors.models().term_count(blend.anchor[i]) > 1;
+      const std::size_t anchor = anchors.first_of(level) + blend.anchor[i];
+      differs = differs || anchors.models().term_count(anchor) > 1;
     }
     for (std::size_t i = 0; differs && i < kMostBlended && blend.weight[i] > 0.0f; ++i) {
       is_needed[blend.anchor[i]] = 1;
     }
   }
-  // Take it.
-  AnchorLayout needed{{}, layout.spacing_m};
-  std::vector<std::size_t> from;
-  for (std::size_t i = 0; i < is_needed.size(); ++i) {
-    if (is_needed[i] == 0) continue;
-    needed.vertices.push_back(layout.vertices[i]);
-    from.push_back(i);
+  return is_needed;
+}
+
+/// Without those that only blend with zeros.
+std::shared_ptr<const AnchoredOffsets> without_idle(const core::Mesh& mesh,
+                                                    const AnchoredOffsets& anchors) {
+  std::vector<AnchorLevel> levels;
+  Models models;
+  for (std::size_t level = 0; level < anchors.levels().size(); ++level) {
+    const AnchorLevel& all = anchors.levels()[level];
+    const std::vector<std::uint8_t> is_needed = needed(mesh, anchors, level);
+    levels.push_back({{}, all.spacing_m});
+    for (std::size_t i = 0; i < is_needed.size(); ++i) {
+      if (is_needed[i] == 0) continue;
+      levels.back().vertices.push_back(all.vertices[i]);
+      models.push_back(anchors.models().patch(anchors.first_of(level) + i));
+    }
   }
-  if (from.empty()) return nullptr;
-  sparse::LightFieldModel models = zeros(from.size());
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    models.store(i, anchors.models().patch(from[i]));
-  }
-  return std::make_shared<const AnchoredOffsets>(mesh, std::move(needed), anchors.asked(),
-                                                 std::move(models));
+  if (models.empty()) return nullptr;
+  sparse::LightFieldModel kept = zeros(models.size());
+  for (std::size_t i = 0; i < models.size(); ++i) kept.store(i, models[i]);
+  return std::make_shared<const AnchoredOffsets>(mesh, std::move(levels), anchors.asked(),
+                                                 std::move(kept));
 }
 
 Eigen::Vector3f mean_over_views(const AnchoredOffsets& anchors, std::size_t vertex,
@@ -213,7 +305,7 @@ Eigen::Vector3f mean_over_views(const AnchoredOffsets& anchors, std::size_t vert
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   float weight = 0;
   for (const sparse::KeptSample& kept : samples) {
-    sum += kept.weight * anchors.colour(vertex, kept.sample.uv);
+    sum += kept.weight * anchors.colour_at(vertex, kept.sample.uv);
     weight += kept.weight;
   }
   return weight > 0.0f ? Eigen::Vector3f(sum / weight) : Eigen::Vector3f::Zero();
@@ -222,11 +314,16 @@ Eigen::Vector3f mean_over_views(const AnchoredOffsets& anchors, std::size_t vert
 }  // namespace
 
 FittedAnchors fit_anchors(const core::Mesh& mesh, const sparse::SparseFitter& patches,
-                          float spacing_m, const sparse::Options& options, int threads) {
-  const Given given{mesh, patches, options, threads};
-  const AnchorLayout layout{scatter_anchors(mesh, spacing_m), spacing_m};
-  Residuals residuals(patches, threads);
-  const AnchoredOffsets anchors = fitted(given, layout, residuals);
+                          const TriangleSamples& samples, float spacing_m,
+                          const sparse::Options& options, int threads) {
+  const float tolerance = patches.statistics().tolerance.value_or(sparse::kToleranceOfUnknownNoise);
+  const Given given{mesh, samples, options, kToleranceShare * tolerance, threads};
+  std::vector<AnchorLevel> levels;
+  for (const float spacings : kSpacings) {
+    levels.push_back({scatter_anchors(mesh, spacings * spacing_m), spacings * spacing_m});
+  }
+  Residuals residuals(samples, threads);
+  const AnchoredOffsets anchors = fitted(given, levels, residuals);
   FittedAnchors found{without_idle(mesh, anchors),
                       std::vector<Eigen::Vector3f>(mesh.positions.size(), Eigen::Vector3f::Zero())};
   if (!found.offsets) return found;

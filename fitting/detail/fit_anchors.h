@@ -3,6 +3,7 @@
 
 #include "core/mesh/mesh.h"
 #include "fitting/detail/anchored_offsets.h"
+#include "fitting/detail/triangle_samples.h"
 #include "fitting/sparse/options.h"
 #include "fitting/sparse/sparse_fitter.h"
 
@@ -21,13 +22,15 @@ struct FittedAnchors {
   std::vector<Eigen::Vector3f> mean;
 };
 
-/// Anchors as far apart as `spacing_m` (> 0), fitted to what the patches' samples differ by from
-/// their means. An anchor's samples are those of all vertices that blend it; its terms are chosen
-/// as a patch's are. Three sweeps over all anchors, each towards what the blends of the last one
+/// Anchors on two levels, the finer ones as far apart as `spacing_m` (> 0), fitted to what the
+/// samples of triangles differ by from their means. An anchor's samples are those of all triangles
+/// that blend it, averaged where they ask it in about the same direction; its terms are chosen as a
+/// patch's are. Sweeps over all anchors of a level, each towards what the blends of all levels
 /// leave. Of the two ways of asking them the one that leaves less after the first sweep is taken.
-/// Anchors with which no vertex differs from zero are dropped. Takes 12 bytes for every kept
-/// sample. The same on any number of threads.
+/// Anchors with which no vertex differs from zero are dropped. Takes 56 bytes for every kept
+/// sample. `patches` know the views of the vertices. The same on any number of threads.
 FittedAnchors fit_anchors(const core::Mesh& mesh, const sparse::SparseFitter& patches,
-                          float spacing_m, const sparse::Options& options, int threads);
+                          const TriangleSamples& samples, float spacing_m,
+                          const sparse::Options& options, int threads);
 
 }  // namespace sheen::fitting::detail

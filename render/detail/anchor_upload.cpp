@@ -3,6 +3,7 @@
 
 #include "core/diagnostics/error.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <vector>
@@ -10,29 +11,39 @@
 namespace sheen::render::detail {
 namespace {
 
-using fitting::detail::AnchorBlend;
 using fitting::detail::AnchoredOffsets;
 using fitting::detail::AskedDirection;
+using fitting::detail::CornerWeights;
 using Texel = std::array<float, 4>;
 
-/// Of every vertex its normal, with 1 or -1 for mirrored, its anchors and their weights; then every
-/// anchor's normal.
+/// Numbers of texels are floats, exact up to here.
+constexpr std::size_t kMostTexels = std::size_t{1} << 24;
+
+/// As detail.glsl reads them.
 std::vector<Texel> blend_texels(const AnchoredOffsets& anchors) {
-  const float side = anchors.asked() == AskedDirection::mirrored ? -1.0f : 1.0f;
-  std::vector<Texel> texels;
-  for (std::size_t vertex = 0; vertex < anchors.blends().size(); ++vertex) {
-    const Eigen::Vector3f& n = anchors.normal(vertex);
-    const AnchorBlend& blend = anchors.blends()[vertex];
-    texels.push_back({n.x(), n.y(), n.z(), side});
-    Texel numbers;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      numbers[i] = static_cast<float>(blend.anchor[i]);  // exact below 2^24
+  const core::Mesh& mesh = anchors.mesh();
+  std::vector<Texel> triangles, lists;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto first = static_cast<float>(lists.size());
+    for (const CornerWeights& blend : anchors.blends(t)) {
+      if (anchors.models().term_count(blend.anchor) == 1) continue;
+      lists.push_back(
+          {static_cast<float>(blend.anchor), blend.weight[0], blend.weight[1], blend.weight[2]});
     }
-    texels.push_back(numbers);
-    texels.push_back(blend.weight);
+    const std::array<float, 3> numbers{first, static_cast<float>(lists.size()), 0.0f};
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const Eigen::Vector3f& p =
+          mesh.positions[mesh.triangles[t][static_cast<Eigen::Index>(corner)]];
+      triangles.push_back({p.x(), p.y(), p.z(), numbers[corner]});
+    }
   }
-  for (const std::uint32_t vertex : anchors.layout().vertices) {
-    const Eigen::Vector3f& n = anchors.normal(vertex);
+  const float side = anchors.asked() == AskedDirection::mirrored ? -1.0f : 1.0f;
+  std::vector<Texel> texels{
+      {side, static_cast<float>(mesh.triangles.size()), static_cast<float>(lists.size()), 0.0f}};
+  texels.insert(texels.end(), triangles.begin(), triangles.end());
+  texels.insert(texels.end(), lists.begin(), lists.end());
+  for (std::size_t anchor = 0; anchor < anchors.models().patch_count(); ++anchor) {
+    const Eigen::Vector3f& n = anchors.frame(anchor).normal;
     texels.push_back({n.x(), n.y(), n.z(), 0.0f});
   }
   return texels;
@@ -47,12 +58,13 @@ AnchorUpload::AnchorUpload(const gl::Functions& gl) : gl_(gl) {
 std::size_t AnchorUpload::show(const std::shared_ptr<const AnchoredOffsets>& anchors) {
   if (texture_.name() != 0 && anchors == shown_) return 0;
   const std::vector<Texel> texels = anchors ? blend_texels(*anchors) : std::vector<Texel>(1);
-  const auto limit = static_cast<std::size_t>(gl::integer_limit(gl_, GL_MAX_TEXTURE_BUFFER_SIZE));
+  const std::size_t limit = std::min(
+      kMostTexels, static_cast<std::size_t>(gl::integer_limit(gl_, GL_MAX_TEXTURE_BUFFER_SIZE)));
   if (texels.size() > limit) {
     throw core::Error(core::Error::Kind::run_failed,
-                      "model of " + std::to_string(anchors->layout().vertices.size()) + " anchors",
+                      "model of " + std::to_string(anchors->models().patch_count()) + " anchors",
                       "needs " + std::to_string(texels.size()) +
-                          " texels, this OpenGL driver holds " + std::to_string(limit),
+                          " texels, this OpenGL driver and program hold " + std::to_string(limit),
                       "use a coarser mesh");
   }
   const std::size_t bytes = texels.size() * sizeof(Texel);

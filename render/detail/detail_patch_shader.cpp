@@ -27,9 +27,9 @@ class DetailPatchShader final : public PatchShader {
   }
 
   [[nodiscard]] std::string glsl() const override {
-    return "#define evaluate_patch evaluate_offset\n" + offsets_->glsl() +
-           "#undef evaluate_patch\n" + std::string(shader_text("detail/detail.glsl"));
+    return offsets_->glsl() + std::string(shader_text("detail/detail.glsl"));
   }
+  [[nodiscard]] bool adds_between_patches() const override { return true; }
   [[nodiscard]] const core::Atlas* atlas() const override { return &model_.texture().atlas(); }
 
   std::size_t upload(std::span<const std::uint32_t> elements) override {

@@ -6,6 +6,10 @@ layout(location = 1) in vec4 corner_sums;
 #ifdef TEXTURED
 layout(location = 2) in vec2 corner_place;
 #endif
+#ifdef BETWEEN
+layout(location = 3) in vec3 corner_in_object;
+layout(location = 4) in vec3 corner_normal;
+#endif
 layout(location = 0) out vec4 colour;
 
 void main() {
@@ -13,6 +17,9 @@ void main() {
   vec3 rgb = corner_sums.rgb / corner_sums.a;
 #ifdef TEXTURED
   rgb += surface_texture(corner_place);
+#endif
+#ifdef BETWEEN
+  rgb += between_patches(gl_PrimitiveID, corner_in_object, normalize(corner_normal));
 #endif
   colour = vec4(clamp(rgb, 0.0, 1.0), alpha);
 }

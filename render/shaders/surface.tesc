@@ -12,6 +12,12 @@ layout(location = 1) out vec4 control_sums[];
 layout(location = 2) in vec2 corner_place[];
 layout(location = 2) out vec2 control_place[];
 #endif
+#ifdef BETWEEN
+layout(location = 3) in vec3 corner_in_object[];
+layout(location = 3) out vec3 control_in_object[];
+layout(location = 4) in vec3 corner_normal[];
+layout(location = 4) out vec3 control_normal[];
+#endif
 
 float segments(vec3 a, vec3 b) {
   // Equal steps on the edge are longest in the image at its near end.
@@ -26,6 +32,10 @@ void main() {
 #endif
 #ifdef TEXTURED
   control_place[gl_InvocationID] = corner_place[gl_InvocationID];
+#endif
+#ifdef BETWEEN
+  control_in_object[gl_InvocationID] = corner_in_object[gl_InvocationID];
+  control_normal[gl_InvocationID] = corner_normal[gl_InvocationID];
 #endif
   if (gl_InvocationID == 0) {
     vec3 a = corner_in_camera[0];

@@ -10,6 +10,12 @@ layout(location = 1) out vec4 corner_sums;
 layout(location = 2) in vec2 control_place[];
 layout(location = 2) out vec2 corner_place;
 #endif
+#ifdef BETWEEN
+layout(location = 3) in vec3 control_in_object[];
+layout(location = 3) out vec3 corner_in_object;
+layout(location = 4) in vec3 control_normal[];
+layout(location = 4) out vec3 corner_normal;
+#endif
 
 void main() {
   // `precise` and the symmetric sum give both triangles at an edge the same point, bit by bit.
@@ -23,6 +29,12 @@ void main() {
 #ifdef TEXTURED
   corner_place = weights.x * control_place[0] + weights.y * control_place[1] +
                  weights.z * control_place[2];
+#endif
+#ifdef BETWEEN
+  corner_in_object = weights.x * control_in_object[0] + weights.y * control_in_object[1] +
+                     weights.z * control_in_object[2];
+  corner_normal = weights.x * control_normal[0] + weights.y * control_normal[1] +
+                  weights.z * control_normal[2];
 #endif
   gl_Position = clip_from_camera(in_camera);
 }

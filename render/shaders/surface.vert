@@ -10,6 +10,11 @@ layout(location = 3) in uint patch_idx;
 layout(location = 2) out vec2 corner_place;
 #endif
 
+#ifdef BETWEEN
+// BETWEEN: more is added that depends on the place.
+layout(location = 3) out vec3 corner_in_object;
+layout(location = 4) out vec3 corner_normal;
+#endif
 #ifdef TESSELLATED
 layout(location = 0) out vec3 corner_in_camera;
 #endif
@@ -27,6 +32,10 @@ void main() {
   int patch_of_vertex = gl_VertexID;
 #endif
   corner_sums = evaluate_patch(patch_of_vertex, direction_on_disc(position, normal));
+#endif
+#ifdef BETWEEN
+  corner_in_object = position;
+  corner_normal = normal;
 #endif
 #ifdef TESSELLATED
   corner_in_camera = in_camera;

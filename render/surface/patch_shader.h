@@ -29,6 +29,10 @@ class PatchShader {
   /// a patch, as LightField::evaluate.
   [[nodiscard]] virtual std::string glsl() const = 0;
 
+  /// Whether `glsl` defines `vec3 between_patches(int triangle_idx, vec3 place, vec3 n)`, too: what
+  /// is added at a place of the surface (object frame) with the unit normal n.
+  [[nodiscard]] virtual bool adds_between_patches() const { return false; }
+
   /// Layout of a texture that is added to what patches interpolate to; null: none. With one,
   /// `bind` makes it available as kSurfaceTextureUnit.
   [[nodiscard]] virtual const core::Atlas* atlas() const { return nullptr; }

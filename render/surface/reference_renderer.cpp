@@ -2,7 +2,7 @@
 #include "core/concurrency/parallel_for.h"
 #include "core/samples/vertex_view.h"
 #include "core/visibility/ray_caster.h"
-#include "fitting/texture/surface_texture.h"
+#include "fitting/between_patches.h"
 #include "render/surface/surface_renderer.h"
 
 #include <algorithm>
@@ -28,6 +28,7 @@ class ReferenceRenderer final : public Renderer {
                     int threads)
       : mesh_(mesh),
         light_field_(light_field),
+        between_(dynamic_cast<const fitting::BetweenPatches*>(&light_field)),
         threads_(threads),
         caster_(mesh),
         frames_(core::tangent_frames(mesh)) {
@@ -40,7 +41,8 @@ class ReferenceRenderer final : public Renderer {
   RenderedView render(const core::CameraModel& camera,
                       const Eigen::Isometry3d& camera_from_object) override {
     cast_rays(camera, camera_from_object);
-    evaluate_vertices(core::eye_in_object(camera_from_object));
+    eye_ = core::eye_in_object(camera_from_object);
+    evaluate_vertices(eye_);
     return shade(camera.width_px(), camera.height_px());
   }
 
@@ -100,7 +102,7 @@ class ReferenceRenderer final : public Renderer {
       for (std::size_t i = begin; i < end; ++i) {
         const bool seen = hits_[i].triangle_idx != kNoTriangle;
         const fitting::WeightedColour sums = seen ? interpolate(hits_[i]) : kNothing;
-        const Eigen::Vector3f colour = sums.colour() + (seen ? texture_at(hits_[i]) : kBlack);
+        const Eigen::Vector3f colour = sums.colour() + (seen ? between(hits_[i]) : kBlack);
         const Eigen::Vector3f rgb = 255.0f * colour.cwiseMax(0.0f).cwiseMin(1.0f);
         for (int channel = 0; channel < 3; ++channel) {
           view.image.data[3 * i + static_cast<std::size_t>(channel)] =
@@ -124,9 +126,14 @@ class ReferenceRenderer final : public Renderer {
     return sums;
   }
 
-  [[nodiscard]] Eigen::Vector3f texture_at(const PixelHit& hit) const {
-    const fitting::SurfaceTexture* const texture = light_field_.texture_between_patches();
-    return texture == nullptr ? kBlack : texture->at(hit.triangle_idx, hit.barycentric);
+  [[nodiscard]] Eigen::Vector3f between(const PixelHit& hit) const {
+    if (between_ == nullptr) return kBlack;
+    const auto& corner = mesh_.triangles[hit.triangle_idx];
+    const Eigen::Vector3f place = hit.barycentric[0] * mesh_.positions[corner[0]] +
+                                  hit.barycentric[1] * mesh_.positions[corner[1]] +
+                                  hit.barycentric[2] * mesh_.positions[corner[2]];
+    return between_->between_patches(hit.triangle_idx, hit.barycentric,
+                                     (eye_ - place).normalized());
   }
 
   inline static const Eigen::Vector3f kBlack = Eigen::Vector3f::Zero();
@@ -135,8 +142,10 @@ class ReferenceRenderer final : public Renderer {
 
   const core::Mesh& mesh_;
   const fitting::PatchLightField& light_field_;
+  const fitting::BetweenPatches* between_;  ///< null: nothing
   int threads_;
   core::RayCaster caster_;
+  Eigen::Vector3f eye_ = Eigen::Vector3f::Zero();
   std::vector<core::TangentFrame> frames_;
   std::vector<PixelHit> hits_;
   std::vector<std::uint8_t> needed_;

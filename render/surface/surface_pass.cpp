@@ -35,15 +35,18 @@ struct TexturedVertex {
 static_assert(sizeof(TexturedVertex) == sizeof(Vertex) + 2 * sizeof(std::uint32_t));
 
 gl::Program make_surface_program(const gl::Functions& gl, const std::string& patch_glsl,
-                                 const std::string& texture_glsl, bool tessellated) {
+                                 bool adds_between, const std::string& texture_glsl,
+                                 bool tessellated) {
   // Say in front of every stage what is wanted.
   const bool shaded = !patch_glsl.empty();
-  const std::string defines = std::string(shaded ? "#define SHADED\n" : "") +
-                              (texture_glsl.empty() ? "" : "#define TEXTURED\n") +
-                              (tessellated ? "#define TESSELLATED\n" : "") +
-                              "#define UNSEEN_WEIGHT " + std::to_string(fitting::kUnseenWeight) +
-                              "\n";
+  const std::string defines =
+      std::string(shaded ? "#define SHADED\n" : "") +
+      (texture_glsl.empty() ? "" : "#define TEXTURED\n") +
+      (adds_between ? "#define BETWEEN\n" : "") + (tessellated ? "#define TESSELLATED\n" : "") +
+      "#define UNSEEN_WEIGHT " + std::to_string(fitting::kUnseenWeight) + "\n";
   const std::string lens = lens_glsl();
+  const std::string between =
+      adds_between ? lens + std::string(shader_text("shaders/direction.glsl")) + patch_glsl : "";
 
   // Gather the stages.
   std::vector<gl::ShaderStage> stages;
@@ -60,7 +63,8 @@ gl::Program make_surface_program(const gl::Functions& gl, const std::string& pat
                       {defines, lens, shader_text("shaders/surface.tese")}});
   }
   const char* const fragment = shaded ? "shaders/surface.frag" : "shaders/depth.frag";
-  stages.push_back({GL_FRAGMENT_SHADER, fragment, {defines, texture_glsl, shader_text(fragment)}});
+  stages.push_back(
+      {GL_FRAGMENT_SHADER, fragment, {defines, between, texture_glsl, shader_text(fragment)}});
   return gl::make_program(gl, stages);
 }
 
@@ -73,7 +77,7 @@ SurfacePass::SurfacePass(const gl::Functions& gl, const core::Mesh& mesh) : gl_(
 }
 
 SurfacePass::SurfacePass(const gl::Functions& gl, const core::Mesh& mesh, const PatchShader& paint)
-    : gl_(gl), patch_glsl_(paint.glsl()) {
+    : gl_(gl), patch_glsl_(paint.glsl()), adds_between_(paint.adds_between_patches()) {
   measure(mesh);
   if (const core::Atlas* const atlas = paint.atlas()) {
     texture_glsl_ = paint.texture_glsl();
@@ -207,7 +211,7 @@ bool SurfacePass::needs_tessellation(const Eigen::Isometry3d& camera_from_object
 const gl::Program& SurfacePass::program(bool tessellated) {
   gl::Program& program = tessellated ? tessellated_ : plain_;
   if (program.name() == 0) {
-    program = make_surface_program(gl_, patch_glsl_, texture_glsl_, tessellated);
+    program = make_surface_program(gl_, patch_glsl_, adds_between_, texture_glsl_, tessellated);
   }
   return program;
 }

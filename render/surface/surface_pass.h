@@ -46,6 +46,7 @@ class SurfacePass {
 
   const gl::Functions& gl_;
   std::string patch_glsl_;                            ///< empty: depth only
+  bool adds_between_ = false;                         ///< patch_glsl_ speaks of fragments, too
   std::string texture_glsl_;                          ///< empty: no texture
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  ///< of the bounds, object frame
   double radius_m_ = 0;

@@ -60,7 +60,7 @@ TEST_F(Export, DirectionsAtAnchorsAreRefusedByThePage) {
   detail::DetailLightField model(mesh, core::make_atlas(mesh, 0.01f, std::size_t{1} << 20));
   const std::vector<std::uint8_t> one(1, 1);
   model.set_anchors(std::make_shared<const detail::AnchoredOffsets>(
-      mesh, detail::AnchorLayout{{0}, 0.01f}, detail::AskedDirection::same,
+      mesh, std::vector<detail::AnchorLevel>{{{0}, 0.01f}}, detail::AskedDirection::same,
       detail::no_offsets(one)));
   fitting::write_model(folder_ / "model.glb", mesh, model, seen_);
   expect_refused({"-o", folder_ / "m.html"}, "--offsets vertex");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Directions at anchors instead of vertices.
+#include "core/atlas/atlas.h"
 #include "core/geometry/disc_map.h"
 #include "core/geometry/tangent_frame.h"
 #include "fitting/detail/detail_light_field.h"
@@ -22,6 +23,7 @@ namespace {
 
 using detail::AnchorBlend;
 using detail::AnchoredOffsets;
+using detail::AnchorLevel;
 using detail::AskedDirection;
 using detail::DetailLightField;
 using testing::Photographs;
@@ -109,60 +111,83 @@ TEST(Anchors, BlendsAreAPartitionOfUnity) {
   EXPECT_EQ(detail::blend_anchors(mesh, alone, spacing_m)[0].weight[0], 1.0f);
 }
 
-// An anchor is asked in the direction of the vertex's own ray, or in the one whose mirror image at
-// the anchor's normal is that of the ray at the vertex's normal.
+Eigen::Vector3f mirror(const Eigen::Vector3f& n, const Eigen::Vector3f& w) {
+  return 2.0f * n.dot(w) * n - w;
+}
+
+Eigen::Vector3f in_object(const core::TangentFrame& frame, const Eigen::Vector2f& uv) {
+  const Eigen::Vector3f local = core::hemisphere_from_disc(uv);
+  return local.x() * frame.tangent + local.y() * frame.bitangent + local.z() * frame.normal;
+}
+
+// An anchor is asked in the direction of the place's own ray, or in the one whose mirror image at
+// the anchor's normal is that of the ray at the place's normal.
 TEST(Anchors, AreAskedInTheSameOrTheMirroredDirection) {
   const core::Mesh mesh = render::testing::sphere(0.1f, 16);
-  const detail::AnchorLayout layout{detail::scatter_anchors(mesh, 0.02f), 0.02f};
-  const auto mirror = [](const Eigen::Vector3f& n, const Eigen::Vector3f& w) -> Eigen::Vector3f {
-    return 2.0f * n.dot(w) * n - w;
-  };
+  const std::vector<AnchorLevel> levels{{detail::scatter_anchors(mesh, 0.02f), 0.02f}};
+  const Eigen::Vector3f middle = Eigen::Vector3f::Constant(1.0f / 3.0f);
   for (const AskedDirection asked : {AskedDirection::same, AskedDirection::mirrored}) {
-    const AnchoredOffsets anchors(mesh, layout, asked,
-                                  sparse::LightFieldModel(layout.vertices.size()));
-    for (std::uint32_t vertex = 0; vertex < mesh.positions.size(); vertex += 7) {
-      const std::uint32_t anchor = anchors.blends()[vertex].anchor[0];
-      const Eigen::Vector2f uv(0.3f, -0.4f);
-      const auto world = [](const Eigen::Vector3f& normal, const Eigen::Vector2f& at) {
-        const core::TangentFrame frame = core::tangent_frame(normal);
-        const Eigen::Vector3f local = core::hemisphere_from_disc(at);
-        return Eigen::Vector3f(local.x() * frame.tangent + local.y() * frame.bitangent +
-                               local.z() * frame.normal);
-      };
-      const Eigen::Vector3f& n = mesh.normals[vertex];
-      const Eigen::Vector3f& n_a = mesh.normals[layout.vertices[anchor]];
-      const Eigen::Vector3f w = world(n, uv);
-      const Eigen::Vector3f w_a = world(n_a, anchors.uv_at(anchor, vertex, uv));
-      if (asked == AskedDirection::same) {
-        EXPECT_LT((w_a - w).norm(), 1e-5f) << vertex;
-      } else {
-        EXPECT_LT((mirror(n_a, w_a) - mirror(n, w)).norm(), 1e-5f) << vertex;
+    const AnchoredOffsets anchors(mesh, levels, asked,
+                                  sparse::LightFieldModel(levels[0].vertices.size()));
+    for (std::size_t triangle = 0; triangle < mesh.triangles.size(); triangle += 7) {
+      const Eigen::Vector3f n = anchors.normal(triangle, middle);
+      const Eigen::Vector3f w = in_object(core::tangent_frame(n), {0.3f, -0.4f});
+      for (const detail::CornerWeights& blend : anchors.blends(triangle)) {
+        const core::TangentFrame& frame = anchors.frame(blend.anchor);
+        const Eigen::Vector3f w_a = in_object(frame, anchors.uv_at(blend.anchor, n, w));
+        if (asked == AskedDirection::same) {
+          EXPECT_LT((w_a - w).norm(), 1e-5f) << triangle;
+        } else {
+          EXPECT_LT((mirror(frame.normal, w_a) - mirror(n, w)).norm(), 1e-5f) << triangle;
+        }
       }
     }
   }
 }
 
-// With every vertex an anchor of its own, offsets are those at vertices but for their means, which
-// the texture takes: the same samples go through the same choice of terms. Samples are kept in
-// steps of 1/32767 and coefficients as halves, so a step of 1/255 is far above what differs.
-TEST(Anchors, AsDenseAsVerticesAreTheVertices) {
-  const Photographs& views = glossy_sphere();
-  const auto anchored = finished(views, "0.01");
-  auto plain = make_fitter("detail", views.mesh(), {{"texel-mm", "1.3"}});
-  views.show(first(16), *plain);
-  plain->finish();
-  ASSERT_NE(model_of(*anchored).anchors(), nullptr);
-  std::size_t differs = 0;
-  for (std::size_t vertex = 0; vertex < views.mesh().positions.size(); ++vertex) {
-    const auto change = [&](const Fitter& fitter) -> Eigen::Vector3f {
-      const DetailLightField& model = model_of(fitter);
-      return model.interpolated_part(vertex, {0.3f, 0.2f}).colour() -
-             model.interpolated_part(vertex, {-0.1f, 0.1f}).colour();
-    };
-    EXPECT_LT((change(*anchored) - change(*plain)).cwiseAbs().maxCoeff(), 1.0f / 255) << vertex;
-    differs += change(*plain).norm() > 0.02f ? 1 : 0;
+/// Patches of a linear base that differ from anchor to anchor.
+sparse::LightFieldModel slopes(std::size_t count) {
+  sparse::LightFieldModel models(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    sparse::PatchModel patch;
+    patch.base_terms = sparse::kLinearBase;
+    for (std::size_t term = 0; term < sparse::kLinearBase; ++term) {
+      const auto phase = static_cast<float>(i + 3 * term);
+      patch.coefficient[term] = {std::sin(phase), std::sin(2 * phase), std::sin(3 * phase)};
+    }
+    models.store(i, patch);
   }
-  EXPECT_GT(differs, views.mesh().positions.size() / 4);
+  return models;
+}
+
+// Levels are added up: what two say together is what each says alone. Within a triangle the weights
+// of its corners change linearly, and add up to 1 on every level.
+TEST(Anchors, LevelsAddUp) {
+  const core::Mesh mesh = render::testing::torus_knot(0.2f, 96, 12);
+  const AnchorLevel coarse{detail::scatter_anchors(mesh, 0.05f), 0.05f};
+  const AnchorLevel fine{detail::scatter_anchors(mesh, 0.02f), 0.02f};
+  const std::size_t first = coarse.vertices.size();
+  const std::size_t all = first + fine.vertices.size();
+  sparse::LightFieldModel models = slopes(all);
+  sparse::LightFieldModel of_coarse(first), of_fine(all - first);
+  for (std::size_t i = 0; i < first; ++i) of_coarse.store(i, models.patch(i));
+  for (std::size_t i = first; i < all; ++i) of_fine.store(i - first, models.patch(i));
+  const auto asked = AskedDirection::mirrored;
+  const AnchoredOffsets both(mesh, {coarse, fine}, asked, std::move(models));
+  const AnchoredOffsets alone(mesh, {coarse}, asked, std::move(of_coarse));
+  const AnchoredOffsets other(mesh, {fine}, asked, std::move(of_fine));
+  const Eigen::Vector3f place(0.2f, 0.3f, 0.5f);
+  for (std::size_t triangle = 0; triangle < mesh.triangles.size(); triangle += 5) {
+    const Eigen::Vector3f w =
+        in_object(core::tangent_frame(both.normal(triangle, place)), {0.3f, 0.2f});
+    const Eigen::Vector3f sum = alone.colour(triangle, place, w) + other.colour(triangle, place, w);
+    EXPECT_LT((both.colour(triangle, place, w) - sum).norm(), 1e-5f) << triangle;
+    Eigen::Vector3f weights = Eigen::Vector3f::Zero();
+    for (const detail::CornerWeights& blend : both.blends(triangle)) {
+      weights += Eigen::Vector3f::Map(blend.weight.data());
+    }
+    EXPECT_LT((weights - Eigen::Vector3f::Constant(2.0f)).norm(), 1e-5f) << triangle;
+  }
 }
 
 // A surface of one colour has nothing to say about directions: no anchor is left.
@@ -180,13 +205,13 @@ TEST(Anchors, ThreadsDoNotChangeABit) {
   EXPECT_EQ(one, testing::bytes_of(finished(views, "10", 8)->light_field()));
 }
 
-// 20 texels of 1.3 mm are wider than the 20 mm between vertices: fewer models.
+// 40 texels of 1.3 mm are wider than the 20 mm between vertices: fewer models.
 TEST(Anchors, TakeFewerBytesThanVertices) {
   const Photographs& views = glossy_sphere();
   auto plain = make_fitter("detail", views.mesh(), {{"texel-mm", "1.3"}});
   views.show(first(16), *plain);
   plain->finish();
-  const auto anchored = finished(views, "20");
+  const auto anchored = finished(views, "40");
   EXPECT_LT(byte_size(anchored->light_field()), byte_size(plain->light_field()));
 }
 
@@ -243,12 +268,46 @@ TEST_F(AnchorsInAFile, GiveBackEveryBit) {
   EXPECT_EQ(read.coefficient_count(), written.coefficient_count());
 }
 
+// Files of versions that knew one level say how far apart its anchors are, and no counts.
+TEST_F(AnchorsInAFile, OfOneLevelMaySayItsSpacingAlone) {
+  const core::Mesh& mesh = glossy_sphere().mesh();
+  const AnchorLevel level{detail::scatter_anchors(mesh, 0.03f), 0.03f};
+  DetailLightField model(mesh, core::make_atlas(mesh, 0.01f, std::size_t{1} << 20));
+  model.set_anchors(std::make_shared<const AnchoredOffsets>(
+      mesh, std::vector{level}, AskedDirection::mirrored, slopes(level.vertices.size())));
+  const Descriptor& descriptor = representation_named("detail");
+  ModelPart part = descriptor.encode(model);
+  part.parameters.erase("anchorLevels");
+  part.parameters["anchorSpacing"] = static_cast<double>(level.spacing_m);
+  const auto read = descriptor.decode(part, mesh);
+  for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex) {
+    EXPECT_EQ(dynamic_cast<const DetailLightField&>(*read).evaluate(vertex, {0.2f, 0.1f}).colour(),
+              model.evaluate(vertex, {0.2f, 0.1f}).colour());
+  }
+  for (const nlohmann::json& spacing : nlohmann::json({0, -1, 1e300, "wide", 1e3})) {
+    part.parameters["anchorSpacing"] = spacing;
+    EXPECT_THROW(static_cast<void>(descriptor.decode(part, mesh)), ModelFault) << spacing;
+  }
+}
+
 TEST_F(AnchorsInAFile, WithBrokenContentAreRefused) {
   EXPECT_NO_THROW(static_cast<void>(read([](ModelPart&) {})));
-  const auto vertices = model_of(*fitter_).anchors()->layout().vertices;
+  std::vector<std::uint32_t> vertices;
+  for (const AnchorLevel& level : model_of(*fitter_).anchors()->levels()) {
+    vertices.insert(vertices.end(), level.vertices.begin(), level.vertices.end());
+  }
   const auto with_vertices = [&](const std::vector<std::uint32_t>& changed) {
     return
         [changed](ModelPart& part) { part.arrays["anchors"] = std::as_bytes(std::span(changed)); };
+  };
+  const auto with_spacing = [](const nlohmann::json& spacing) {
+    return [spacing](ModelPart& part) { part.parameters["anchorLevels"][0]["spacing"] = spacing; };
+  };
+  const auto with_count = [](const nlohmann::json& count) {
+    return [count](ModelPart& part) { part.parameters["anchorLevels"][1]["count"] = count; };
+  };
+  const auto with_levels = [](const nlohmann::json& levels) {
+    return [levels](ModelPart& part) { part.parameters["anchorLevels"] = levels; };
   };
   auto beyond = vertices, twice = vertices, dense = vertices, fewer = vertices;
   beyond.back() = static_cast<std::uint32_t>(glossy_sphere().mesh().positions.size());
@@ -256,6 +315,7 @@ TEST_F(AnchorsInAFile, WithBrokenContentAreRefused) {
   std::iota(dense.begin(), dense.end(), 0u);
   fewer.pop_back();
   std::vector<std::uint32_t> backwards(vertices.rbegin(), vertices.rend());
+  const nlohmann::json empty_level = {{"count", 0}, {"spacing", 1.0}};
   const std::vector<Change> changes{
       with_vertices(beyond),
       with_vertices(twice),
@@ -263,14 +323,25 @@ TEST_F(AnchorsInAFile, WithBrokenContentAreRefused) {
       with_vertices(fewer),
       with_vertices(backwards),
       with_vertices({}),
+      with_spacing(0),
+      with_spacing(-1),
+      with_spacing(1e300),
+      with_spacing(1e-300),
+      with_spacing("wide"),
+      with_spacing(1e3),
+      with_count(0),
+      with_count(-1),
+      with_count(vertices.size()),
+      with_count(std::uint64_t{1} << 40),
+      with_count("many"),
+      with_levels(1),
+      with_levels(nlohmann::json::array()),
+      with_levels({1, 2}),
+      with_levels({empty_level, empty_level, empty_level, empty_level, empty_level}),
       [](ModelPart& part) { part.arrays["anchors"] = part.arrays["anchors"].first(5); },
-      [](ModelPart& part) { part.parameters["anchorSpacing"] = 0; },
-      [](ModelPart& part) { part.parameters["anchorSpacing"] = -1; },
-      [](ModelPart& part) { part.parameters["anchorSpacing"] = 1e300; },
-      [](ModelPart& part) { part.parameters["anchorSpacing"] = 1e-300; },
-      [](ModelPart& part) { part.parameters["anchorSpacing"] = "wide"; },
-      [](ModelPart& part) { part.parameters["anchorSpacing"] = 1e3; },
-      [](ModelPart& part) { part.parameters.erase("anchorSpacing"); },
+      [](ModelPart& part) { part.parameters["anchorLevels"][0].erase("spacing"); },
+      [](ModelPart& part) { part.parameters["anchorLevels"][0].erase("count"); },
+      [](ModelPart& part) { part.parameters.erase("anchorLevels"); },
       [](ModelPart& part) { part.parameters["mirrored"] = 1; },
       [](ModelPart& part) { part.parameters.erase("mirrored"); },
       [](ModelPart& part) { part.arrays.erase("anchors"); },
