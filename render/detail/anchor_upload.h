@@ -18,6 +18,8 @@ class AnchorUpload {
   /// Sends `anchors` (null: none) unless they are there. Returns the bytes sent.
   std::size_t show(const std::shared_ptr<const fitting::detail::AnchoredOffsets>& anchors);
 
+  [[nodiscard]] bool has_any() const { return shown_ != nullptr; }
+
   void bind() const;
 
  private:

@@ -29,7 +29,7 @@ class DetailPatchShader final : public PatchShader {
   [[nodiscard]] std::string glsl() const override {
     return offsets_->glsl() + std::string(shader_text("detail/detail.glsl"));
   }
-  [[nodiscard]] bool adds_between_patches() const override { return true; }
+  [[nodiscard]] bool adds_between_patches() const override { return anchors_.has_any(); }
   [[nodiscard]] const core::Atlas* atlas() const override { return &model_.texture().atlas(); }
 
   std::size_t upload(std::span<const std::uint32_t> elements) override {

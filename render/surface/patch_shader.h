@@ -30,7 +30,8 @@ class PatchShader {
   [[nodiscard]] virtual std::string glsl() const = 0;
 
   /// Whether `glsl` defines `vec3 between_patches(int triangle_idx, vec3 place, vec3 n)`, too: what
-  /// is added at a place of the surface (object frame) with the unit normal n.
+  /// is added at a place of the surface (object frame) with the unit normal n. May change with
+  /// `upload`.
   [[nodiscard]] virtual bool adds_between_patches() const { return false; }
 
   /// Layout of a texture that is added to what patches interpolate to; null: none. With one,

@@ -17,6 +17,7 @@ void SurfaceLayer::draw(gl::OffscreenTarget& target, const core::CameraModel& ca
   paint_->look_from(core::eye_in_object(camera_from_object),
                     {camera.width_px(), camera.height_px()});
   paint_->bind();
+  pass_.set_adds_between(paint_->adds_between_patches());
   pass_.draw(framebuffer, camera, camera_from_object);
 }
 

@@ -88,6 +88,13 @@ SurfacePass::SurfacePass(const gl::Functions& gl, const core::Mesh& mesh, const 
   program(false);
 }
 
+void SurfacePass::set_adds_between(bool adds_between) {
+  if (adds_between == adds_between_) return;
+  adds_between_ = adds_between;
+  plain_ = {};
+  tessellated_ = {};
+}
+
 void SurfacePass::draw(GLuint target, const core::CameraModel& camera,
                        const Eigen::Isometry3d& camera_from_object) {
   // Tell the shaders about the view.

@@ -24,6 +24,9 @@ class SurfacePass {
   /// Colours, too: what `paint` (used here only) says of patches and of a texture.
   SurfacePass(const gl::Functions& gl, const core::Mesh& mesh, const PatchShader& paint);
 
+  /// Whether `paint` adds between patches by now; fragments cost half as much again where it does.
+  void set_adds_between(bool adds_between);
+
   /// Clears the bound framebuffer `target` and draws.
   void draw(GLuint target, const core::CameraModel& camera,
             const Eigen::Isometry3d& camera_from_object);
