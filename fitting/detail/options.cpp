@@ -27,9 +27,9 @@ OptionTable option_table(Options& options) {
       "offsets", options.offsets,
       {{"vertex", OffsetPlaces::vertex}, {"anchors", OffsetPlaces::anchors}},
       "Where the model keeps how colours change with the direction: at every vertex, or at anchors "
-      "between which vertices blend; fewer bytes, most often less accurate"));
+      "between which the surface blends: fewer bytes, better on smooth glossy shapes, slower"));
   table.push_back(number_option("anchor-px", options.anchor_px, kLeastAnchor_px, kMostAnchor_px,
-                                "With --offsets anchors: their distance, texels"));
+                                "With --offsets anchors: the distance of the finer ones, texels"));
   return table;
 }
 
