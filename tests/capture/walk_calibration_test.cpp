@@ -11,7 +11,6 @@
 #include <cmath>
 #include <numbers>
 #include <random>
-#include <ranges>
 
 namespace sheen::capture::test {
 namespace {
@@ -92,6 +91,18 @@ TEST(WalkCalibration, FindsAKnownLensWithinItsDeviations) {
   }
 }
 
+/// Moves every side of a tag outwards.
+void grow(TagDetection& tag, double px) {
+  const auto seen = tag.corners_px;
+  for (std::size_t c = 0; c < 4; ++c) {
+    // The point that lies so far beyond both of its sides.
+    const Eigen::Vector2d to_next = (seen[c] - seen[(c + 1) % 4]).normalized();
+    const Eigen::Vector2d to_last = (seen[c] - seen[(c + 3) % 4]).normalized();
+    const double sine = std::abs(to_next.x() * to_last.y() - to_next.y() * to_last.x());
+    tag.corners_px[c] += px / sine * (to_next + to_last);
+  }
+}
+
 // Codes are not light, and ink spreads: every black square may look larger or smaller by the same
 // part of a pixel. Corners then move along their diagonals, which a lens would be blamed for.
 TEST(WalkCalibration, SquaresThatLookTooSmallOrTooLargeDoNotBendTheLens) {
@@ -99,15 +110,8 @@ TEST(WalkCalibration, SquaresThatLookTooSmallOrTooLargeDoNotBendTheLens) {
   for (const double edges_px : {-0.2, 0.15}) {
     SCOPED_TRACE(edges_px);
     auto views = walk_round(sheet(), truth, 40, 35, 65, 7);
-    for (TagDetection& tag : views | std::views::join) {
-      const auto seen = tag.corners_px;
-      for (std::size_t c = 0; c < 4; ++c) {
-        // The point that lies so far beyond both of its sides.
-        const Eigen::Vector2d to_next = (seen[c] - seen[(c + 1) % 4]).normalized();
-        const Eigen::Vector2d to_last = (seen[c] - seen[(c + 3) % 4]).normalized();
-        const double sine = std::abs(to_next.x() * to_last.y() - to_next.y() * to_last.x());
-        tag.corners_px[c] += edges_px / sine * (to_next + to_last);
-      }
+    for (auto& view : views) {
+      for (TagDetection& tag : view) grow(tag, edges_px);
     }
     const auto found = calibrate_from_walk(sheet(), guessed_lens({1280, 720}), views);
     ASSERT_TRUE(found);
