@@ -37,10 +37,16 @@ class PatchLightField : public LightField {
   [[nodiscard]] virtual WeightedColour evaluate(std::size_t patch_idx,
                                                 const Eigen::Vector2f& uv) const = 0;
 
-  /// Colours that lie between the patches, too, and are added to what is interpolated across a
-  /// triangle; null: none.
+  /// Colour that is added, at a place on a triangle, to what patches interpolate to there: towards
+  /// `w`, unit vector in the object frame.
+  [[nodiscard]] virtual Eigen::Vector3f between_patches(std::size_t /*triangle_idx*/,
+                                                        const Eigen::Vector3f& /*barycentric*/,
+                                                        const Eigen::Vector3f& /*w*/) const {
+    return Eigen::Vector3f::Zero();
+  }
+  /// The part of it that is the same towards every direction; null: none.
   [[nodiscard]] virtual const SurfaceTexture* texture_between_patches() const { return nullptr; }
-  /// What is interpolated: `evaluate` without the texture.
+  /// What is interpolated: `evaluate` without what lies between.
   [[nodiscard]] virtual WeightedColour interpolated_part(std::size_t patch_idx,
                                                          const Eigen::Vector2f& uv) const {
     return evaluate(patch_idx, uv);

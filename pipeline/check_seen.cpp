@@ -113,6 +113,12 @@ bool has_stamps_for_all(const capture::Session& session, const FrameChoice& choi
          !choice.end;
 }
 
+/// Number in the name of the recording's first image; 0 for a video.
+int first_image_number(const capture::Session& session) {
+  const auto name = capture::NumberedName::parse(session.image_pattern.value_or(""));
+  return name ? capture::find_images(session.folder, *name).first : 0;
+}
+
 /// Why the vertices of the mesh gave no sample, by the reason that most of them have.
 core::Error unseen(const capture::Session& session, const FrameStatistics& frames,
                    const SessionScene& scene) {
@@ -175,16 +181,6 @@ void check_stamps(const capture::Session& session, const FrameChoice& choice,
       capture::shifted_stamps(capture::read_trajectory(*session.poses), *frame_count);
   if (fault) throw core::bad_input(*session.poses, fault->fault, fault->remedy);
 }
-
-namespace {
-
-/// Number in the name of the recording's first image; 0 for a video.
-int first_image_number(const capture::Session& session) {
-  const auto name = capture::NumberedName::parse(session.image_pattern.value_or(""));
-  return name ? capture::find_images(session.folder, *name).first : 0;
-}
-
-}  // namespace
 
 std::vector<std::string> doubts_of_stamps(const capture::Session& session,
                                           const FrameChoice& choice,

@@ -2,6 +2,7 @@
 #include "app/commands/mesh.h"
 
 #include "app/commands/frame_options.h"
+#include "app/commands/refine_by_print.h"
 #include "app/commands/walk_session.h"
 #include "app/session_lock.h"
 #include "app/terminal_sink.h"
@@ -14,24 +15,19 @@
 #include "core/mesh/bounds.h"
 #include "core/mesh/ply_file.h"
 #include "pipeline/hold_out.h"
-#include "pipeline/mesh_heights.h"
 #include "pipeline/pose_frames.h"
 #include "pipeline/posed_views.h"
 #include "reconstruction/object/object_mesh.h"
-#include "reconstruction/surface/untangle.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 namespace sheen::app {
 namespace {
 
 constexpr std::size_t kMostImages = 120;
 constexpr std::size_t kPictureViews = 6;
-constexpr int kMostPrintRounds = 4;
-constexpr double kClearFall = 0.05;  // of the residual: gloss is taken for smaller ones
 
 struct MeshOptions {
   std::filesystem::path session;
@@ -83,36 +79,6 @@ std::vector<reconstruction::PosedImage> read_images(const capture::Session& sess
         sink.progress({"reading", static_cast<int>(images.size()), static_cast<int>(count)});
       });
   return images;
-}
-
-/// How the object's print moved the mesh.
-struct PrintRefinement {
-  int rounds = 0;            ///< that views which had no part in them confirmed; 0: stays
-  double residual_left = 1;  ///< on those views, of what it was before
-};
-
-/// Moves vertices to where the pictures of the object's print agree, as long as views that have no
-/// part in it confirm that clearly and the surface still crosses itself nowhere.
-PrintRefinement refine_by_print(const capture::Session& session,
-                                const std::vector<reconstruction::PosedImage>& images, int threads,
-                                pipeline::ProgressSink& sink, core::Mesh& mesh) {
-  std::vector<fitting::heights::PosedImage> views;
-  for (const auto& image : images) {
-    views.push_back({image.image, &session.camera_of(image.frame_index), image.camera_from_board});
-  }
-  PrintRefinement result;
-  while (result.rounds < kMostPrintRounds) {
-    auto refined = pipeline::refine_mesh_heights(mesh, views, threads, sink);
-    if (!refined.is_accepted || refined.residual_change > -kClearFall) break;
-    for (Eigen::Vector3f& position : refined.mesh.positions) {
-      position.z() = std::max(position.z(), 0.0F);  // the sheet carries the object
-    }
-    if (!reconstruction::untangle(refined.mesh, threads)) break;
-    mesh = std::move(refined.mesh);
-    result.residual_left *= 1 + refined.residual_change;
-    ++result.rounds;
-  }
-  return result;
 }
 
 void draw_outlines(const MeshOptions& options, const capture::Session& session,

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -31,7 +32,7 @@ int main(int argc, char** argv) {
         stress.seed = static_cast<std::uint32_t>(options.seed);
         if (options.quick) {
           stress.vertices = 500;
-          stress.frames = 8;
+          stress.frames = std::min(stress.frames, 8);
           stress.held_out = 2;
           stress.samples = 1;
           if (only.empty()) only = {"mesh-scale"};

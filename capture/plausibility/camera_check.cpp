@@ -8,8 +8,7 @@
 namespace sheen::capture {
 namespace {
 
-constexpr double kFarFromMiddle =
-    0.2;  // of the image's sides; lenses are centred to a few hundredths
+constexpr double kFarFromMiddle = 0.2;    // of the image's sides; lenses have some hundredths
 constexpr double kMostTangential = 0.02;  // p1 and p2; lenses have thousandths
 
 /// Largest distance from the middle, in sides of the image.

@@ -99,11 +99,15 @@ class SessionReader {
     return found->get<std::string>();
   }
 
-  /// A path, after the check that it stays within the folder. Windows separates by backslashes.
+  /// A path, after the check that it stays within the folder. Windows separates by backslashes,
+  /// which elsewhere may stand in names.
   [[nodiscard]] std::optional<std::string> inner_path(const json& parent, const char* key) const {
     auto written = text(parent, key);
     if (!written) return std::nullopt;
-    std::replace(written->begin(), written->end(), '\\', '/');
+    std::error_code no_throw;
+    if (!std::filesystem::exists(folder_ / *written, no_throw)) {
+      std::replace(written->begin(), written->end(), '\\', '/');
+    }
     const std::filesystem::path relative(*written);
     const auto normal = relative.lexically_normal();
     if (relative.is_absolute() || normal.begin() == normal.end() || *normal.begin() == ".." ||

@@ -13,6 +13,11 @@ struct TangentFrame {
   Eigen::Vector3f tangent;
   Eigen::Vector3f bitangent;
   Eigen::Vector3f normal;
+
+  /// A direction given by its components in the frame, object frame.
+  [[nodiscard]] Eigen::Vector3f in_object(const Eigen::Vector3f& local) const {
+    return local.x() * tangent + local.y() * bitangent + local.z() * normal;
+  }
 };
 
 /// The one frame that every part of the program derives from a unit normal: no seam except where

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <iterator>
 #include <numbers>
-#include <optional>
 
 namespace sheen::evaluation {
 namespace {
@@ -166,40 +165,49 @@ void keep_tags(StressRecording& recording, double count) {
       tags.end());
 }
 
-/// The tag's square in an image, half as large again; empty where the object stands before it or
-/// the camera does not see it.
-std::vector<cv::Point> around_tag(const StressRecording& recording, std::size_t frame,
-                                  const capture::Board::Tag& tag) {
+/// Where a camera sees points of the board's frame; those that it does not see are left out.
+std::vector<cv::Point2f> pixels_of(const StressRecording& recording, std::size_t frame,
+                                   const std::vector<Eigen::Vector3d>& in_board) {
   const Eigen::Isometry3d camera_from_board = recording.board_from_camera[frame].inverse();
-  const auto pixel = [&](const Eigen::Vector3d& in_board) -> std::optional<cv::Point2f> {
-    const auto seen = recording.camera.project(camera_from_board * in_board);
-    if (!seen) return std::nullopt;
-    return cv::Point2f(static_cast<float>(seen->x()), static_cast<float>(seen->y()));
-  };
-  std::vector<cv::Point> square;
-  for (const Eigen::Vector3d& corner : tag.corners_in_board()) {
-    const Eigen::Vector3d middle = tag.board_from_tag.translation();
-    const auto at = pixel(middle + 1.5 * (corner - middle));
-    if (!at) return {};
-    square.emplace_back(cvRound(at->x), cvRound(at->y));
+  std::vector<cv::Point2f> pixels;
+  for (const Eigen::Vector3d& point : in_board) {
+    const auto seen = recording.camera.project(camera_from_board * point);
+    if (seen) pixels.emplace_back(static_cast<float>(seen->x()), static_cast<float>(seen->y()));
   }
-  const bool is_behind_object =
-      std::ranges::any_of(recording.mesh.positions, [&](const Eigen::Vector3f& position) {
-        const auto at = pixel(recording.board_from_object * position.cast<double>());
-        return at && cv::pointPolygonTest(square, *at, false) >= 0;
-      });
-  return is_behind_object ? std::vector<cv::Point>{} : square;
+  return pixels;
+}
+
+/// The corners of a sheet over the tag, half as large again, board frame.
+std::vector<Eigen::Vector3d> sheet_over(const capture::Board::Tag& tag) {
+  const Eigen::Vector3d middle = tag.board_from_tag.translation();
+  std::vector<Eigen::Vector3d> corners;
+  for (const Eigen::Vector3d& corner : tag.corners_in_board()) {
+    corners.push_back(middle + 1.5 * (corner - middle));
+  }
+  return corners;
 }
 
 /// Grey paper on all tags but the first `count` in every second frame; none over the object.
 void cover_tags(StressRecording& recording, double count) {
+  std::vector<Eigen::Vector3d> object;
+  for (const Eigen::Vector3f& position : recording.mesh.positions) {
+    object.push_back(recording.board_from_object * position.cast<double>());
+  }
+  const auto& tags = recording.board.tags;
+  const auto first = std::next(tags.begin(), std::min(static_cast<std::ptrdiff_t>(count),
+                                                      static_cast<std::ptrdiff_t>(tags.size())));
   for (std::size_t i = 0; i < recording.light.size(); i += 2) {
     cv::Mat light = recording.light[i].clone();
-    double left = count;
-    for (const auto& [id, tag] : recording.board.tags) {
-      if (left-- > 0) continue;
-      const auto square = around_tag(recording, i, tag);
-      if (!square.empty()) cv::fillConvexPoly(light, square, {0.4, 0.4, 0.4});
+    const auto object_pixels = pixels_of(recording, i, object);
+    for (auto tag = first; tag != tags.end(); ++tag) {
+      const auto corners = pixels_of(recording, i, sheet_over(tag->second));
+      if (corners.size() < 4) continue;
+      const bool is_behind_object = std::ranges::any_of(object_pixels, [&](const auto& pixel) {
+        return cv::pointPolygonTest(corners, pixel, false) >= 0;
+      });
+      if (is_behind_object) continue;
+      const std::vector<cv::Point> square(corners.begin(), corners.end());  // rounded
+      cv::fillConvexPoly(light, square, {0.4, 0.4, 0.4});
     }
     recording.light[i] = light;
   }

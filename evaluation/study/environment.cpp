@@ -32,8 +32,7 @@ void add_lamp(Environment& environment, const Vector3f& towards, float radius,
   const float solid_angle = 2.0f * std::numbers::pi_v<float> * (1.0f - std::cos(radius));
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3f local = spiral(i, count, std::cos(radius));
-    environment.direction.push_back(local.x() * frame.tangent + local.y() * frame.bitangent +
-                                    local.z() * frame.normal);
+    environment.direction.push_back(frame.in_object(local));
     environment.power.push_back(radiance * (solid_angle / static_cast<float>(count)));
   }
 }

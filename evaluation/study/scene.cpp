@@ -50,9 +50,7 @@ std::vector<Frame> walk(const HandheldOrbit& orbit, std::size_t count,
     // The error is a turn about the object: the frame z > 0 of with_pose_error is the camera's own.
     const core::TangentFrame camera = core::tangent_frame(actual);
     const Vector3f error = with_pose_error({0, 0, 1}, options.corruption, random);
-    const Vector3f reported =
-        error.x() * camera.tangent + error.y() * camera.bitangent + error.z() * camera.normal;
-    frames.push_back({actual, reported, key});
+    frames.push_back({actual, camera.in_object(error), key});
   }
   return frames;
 }

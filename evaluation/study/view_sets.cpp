@@ -38,9 +38,7 @@ std::vector<View> cluster_views(std::size_t count, std::uint64_t seed) {
     const Vector3f local =
         Random(hash_of({seed, kClusters, cluster_count + key})).on_sphere(std::cos(radius), 1.0f);
     const core::TangentFrame& at = clusters[key % cluster_count];
-    const Vector3f direction =
-        local.x() * at.tangent + local.y() * at.bitangent + local.z() * at.normal;
-    views.push_back({direction, key});
+    views.push_back({at.in_object(local), key});
   }
   return views;
 }

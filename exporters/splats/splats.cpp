@@ -134,10 +134,7 @@ class SplatLightField final : public fitting::PatchLightField {
   [[nodiscard]] std::size_t patch_count() const override { return frames_.size(); }
   [[nodiscard]] fitting::WeightedColour evaluate(std::size_t patch,
                                                  const Eigen::Vector2f& uv) const override {
-    const core::TangentFrame& frame = frames_[patch];
-    const Eigen::Vector3f local = core::hemisphere_from_disc(uv);
-    const Eigen::Vector3f towards_eye =
-        local.x() * frame.tangent + local.y() * frame.bitangent + local.z() * frame.normal;
+    const Eigen::Vector3f towards_eye = frames_[patch].in_object(core::hemisphere_from_disc(uv));
     return {splats_[splat_of_[patch]].colour(-(axes_ * towards_eye)).cwiseMax(0.0f), 1.0f};
   }
   [[nodiscard]] Eigen::Vector3f mean_colour(std::size_t patch) const override {

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "fitting/billboard/frame_colours.h"
 
+#include "core/mesh/interpolation.h"
+
 #include <cstddef>
 
 namespace sheen::fitting::billboard {
 
 PatchColours::PatchColours(const core::Mesh& mesh, const std::vector<core::TangentFrame>& frames,
                            const PatchLightField& light_field)
-    : mesh_(mesh),
-      frames_(frames),
-      light_field_(light_field),
-      between_(dynamic_cast<const BetweenPatches*>(&light_field)),
-      colours_(mesh.positions.size()) {}
+    : mesh_(mesh), frames_(frames), light_field_(light_field), colours_(mesh.positions.size()) {}
 
 /// Evaluates the patches that the frame needs.
 void PatchColours::look_from(const FrameCamera& camera, std::span<const std::uint8_t> needed) {
@@ -33,13 +31,9 @@ WeightedColour PatchColours::at(const SurfacePoint& point, const cv::Point& /*fi
     sums.colour_sum += weight[corner] * colours_[vertex[corner]].colour_sum;
     sums.weight_sum += weight[corner] * colours_[vertex[corner]].weight_sum;
   }
-  if (between_ != nullptr) {
-    const Eigen::Vector3f place = weight[0] * mesh_.positions[vertex[0]] +
-                                  weight[1] * mesh_.positions[vertex[1]] +
-                                  weight[2] * mesh_.positions[vertex[2]];
-    const Eigen::Vector3f w = (camera_->viewer_of(place) - place).normalized();
-    sums.colour_sum += sums.weight_sum * between_->between_patches(point.triangle_idx, weight, w);
-  }
+  const Eigen::Vector3f place = core::place_on(mesh_, point.triangle_idx, weight);
+  const Eigen::Vector3f w = (camera_->viewer_of(place) - place).normalized();
+  sums.colour_sum += sums.weight_sum * light_field_.between_patches(point.triangle_idx, weight, w);
   return sums;
 }
 

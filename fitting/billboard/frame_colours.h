@@ -3,7 +3,6 @@
 
 #include "core/geometry/tangent_frame.h"
 #include "core/mesh/mesh.h"
-#include "fitting/between_patches.h"
 #include "fitting/billboard/frame.h"
 #include "fitting/patch_light_field.h"
 
@@ -50,7 +49,6 @@ class PatchColours final : public FrameColours {
   const core::Mesh& mesh_;
   const std::vector<core::TangentFrame>& frames_;
   const PatchLightField& light_field_;
-  const BetweenPatches* between_;  ///< null: nothing
   std::optional<FrameCamera> camera_;
   std::vector<WeightedColour> colours_;
 };

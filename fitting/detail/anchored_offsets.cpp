@@ -2,6 +2,7 @@
 #include "fitting/detail/anchored_offsets.h"
 
 #include "core/geometry/disc_map.h"
+#include "core/mesh/interpolation.h"
 
 #include <algorithm>
 #include <cassert>
@@ -71,7 +72,7 @@ Eigen::Vector3f AnchoredOffsets::colour_of(std::size_t first, std::size_t end, s
                                            const Eigen::Vector3f& barycentric,
                                            const Eigen::Vector3f& w) const {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  const Eigen::Vector3f n = normal(triangle, barycentric);
+  const Eigen::Vector3f n = core::normal_on(mesh_, triangle, barycentric);
   for (const CornerWeights& blend : blends(triangle)) {
     if (blend.anchor < first || blend.anchor >= end) continue;
     if (models_.term_count(blend.anchor) == 1) continue;
@@ -83,9 +84,8 @@ Eigen::Vector3f AnchoredOffsets::colour_of(std::size_t first, std::size_t end, s
 Eigen::Vector3f AnchoredOffsets::colour_at(std::size_t vertex, const Eigen::Vector2f& uv) const {
   if (corner_of_[vertex] == kNoCorner) return Eigen::Vector3f::Zero();
   const core::TangentFrame frame = core::tangent_frame(mesh_.normals[vertex]);
-  const Eigen::Vector3f local = core::hemisphere_from_disc(uv);
   return colour(corner_of_[vertex] / 3, Eigen::Vector3f::Unit(corner_of_[vertex] % 3),
-                local.x() * frame.tangent + local.y() * frame.bitangent + local.z() * frame.normal);
+                frame.in_object(core::hemisphere_from_disc(uv)));
 }
 
 // Mirroring at the place, less the sign: -r = w - 2 (n . w) n; mirroring at the anchor turns it
@@ -98,16 +98,6 @@ Eigen::Vector2f AnchoredOffsets::uv_at(std::size_t anchor, const Eigen::Vector3f
   const Eigen::Vector2f at(v.dot(frame.tangent), v.dot(frame.bitangent));
   // Behind the anchor's horizon: on the rim.
   return side * v.dot(frame.normal) < 0.0f && at.squaredNorm() > 0.0f ? at.normalized() : at;
-}
-
-Eigen::Vector3f AnchoredOffsets::normal(std::size_t triangle,
-                                        const Eigen::Vector3f& barycentric) const {
-  const auto& corner = mesh_.triangles[triangle];
-  const Eigen::Vector3f sum = barycentric[0] * mesh_.normals[corner[0]] +
-                              barycentric[1] * mesh_.normals[corner[1]] +
-                              barycentric[2] * mesh_.normals[corner[2]];
-  const float length = sum.norm();
-  return length > 1e-6f ? Eigen::Vector3f(sum / length) : mesh_.normals[corner[0]];
 }
 
 }  // namespace sheen::fitting::detail

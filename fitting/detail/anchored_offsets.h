@@ -76,10 +76,6 @@ class AnchoredOffsets {
   [[nodiscard]] Eigen::Vector2f uv_at(std::size_t anchor, const Eigen::Vector3f& n,
                                       const Eigen::Vector3f& w) const;
 
-  /// Unit normal at a place on a triangle.
-  [[nodiscard]] Eigen::Vector3f normal(std::size_t triangle,
-                                       const Eigen::Vector3f& barycentric) const;
-
  private:
   [[nodiscard]] Eigen::Vector3f colour_of(std::size_t first, std::size_t end, std::size_t triangle,
                                           const Eigen::Vector3f& barycentric,

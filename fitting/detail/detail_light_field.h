@@ -3,7 +3,6 @@
 
 #include "core/atlas/atlas.h"
 #include "core/mesh/mesh.h"
-#include "fitting/between_patches.h"
 #include "fitting/detail/anchored_offsets.h"
 #include "fitting/patch_light_field.h"
 #include "fitting/sparse/light_field_model.h"
@@ -28,7 +27,7 @@ sparse::LightFieldModel no_offsets(std::span<const std::uint8_t> observed);
 /// A light field of two parts that are added up: a texture, the mean colour of every place, and
 /// how the colour differs from it towards every direction: patches, one per vertex, or blended from
 /// anchors.
-class DetailLightField final : public PatchLightField, public BetweenPatches {
+class DetailLightField final : public PatchLightField {
  public:
   /// Mid grey, and the same towards every direction. `atlas` is one of `mesh`.
   DetailLightField(const core::Mesh& mesh, core::Atlas atlas);

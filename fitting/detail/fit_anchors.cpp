@@ -2,6 +2,7 @@
 #include "fitting/detail/fit_anchors.h"
 
 #include "core/concurrency/parallel_for.h"
+#include "core/mesh/interpolation.h"
 #include "fitting/detail/detail_light_field.h"
 #include "fitting/sparse/workspaces.h"
 
@@ -151,7 +152,7 @@ class AskedCells {
     uvs_.clear();
     for (const Follower& follower : followers) {
       const Eigen::Vector3f n =
-          anchors.normal(follower.triangle, given.samples.middle(follower.triangle));
+          core::normal_on(given.mesh, follower.triangle, given.samples.middle(follower.triangle));
       for (const Residuals::Sample& one : residuals.of(follower.triangle)) {
         uvs_.push_back(anchors.uv_at(anchor, n, one.w));
       }

@@ -4,6 +4,7 @@
 #include "core/concurrency/parallel_for.h"
 #include "core/geometry/disc_map.h"
 #include "core/geometry/tangent_frame.h"
+#include "core/mesh/interpolation.h"
 #include "core/samples/vertex_view.h"
 
 #include <algorithm>
@@ -38,12 +39,8 @@ void TriangleSamples::integrate(const core::Observation& observation, const View
       const CornerColours& corners = triangles[t];
       const Four sum = corners.colour[0] + corners.colour[1] + corners.colour[2];
       if (sum[0] < static_cast<float>(texels) - 0.5f) continue;
-      const auto& corner = mesh_.triangles[t];
-      const Eigen::Vector3f place = middle_[t][0] * mesh_.positions[corner[0]] +
-                                    middle_[t][1] * mesh_.positions[corner[1]] +
-                                    middle_[t][2] * mesh_.positions[corner[2]];
-      const core::DiscDirection seen =
-          core::direction_towards(core::tangent_frame(normal(t)), place, eye);
+      const core::DiscDirection seen = core::direction_towards(
+          core::tangent_frame(normal(t)), core::place_on(mesh_, t, middle_[t]), eye);
       if (seen.cosine <= 0.0f) continue;
       const float per = 1.0f / (255.0f * sum[0]);
       stores_[t].add({seen.uv, per * Eigen::Vector3f(sum[1], sum[2], sum[3])}, most_, pool_);
@@ -57,21 +54,14 @@ std::vector<TriangleSample> TriangleSamples::of(std::size_t triangle) const {
   std::vector<TriangleSample> samples(store.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto [uv, rgb] = store.at(i, pool_);
-    const Eigen::Vector3f local = core::hemisphere_from_disc(uv);
-    samples[i] = {
-        local.x() * frame.tangent + local.y() * frame.bitangent + local.z() * frame.normal, rgb,
-        store.count(i, pool_) * std::max(0.0f, 1.0f - uv.squaredNorm())};
+    samples[i] = {frame.in_object(core::hemisphere_from_disc(uv)), rgb,
+                  store.count(i, pool_) * std::max(0.0f, 1.0f - uv.squaredNorm())};
   }
   return samples;
 }
 
 Eigen::Vector3f TriangleSamples::normal(std::size_t triangle) const {
-  const auto& corner = mesh_.triangles[triangle];
-  const Eigen::Vector3f sum = middle_[triangle][0] * mesh_.normals[corner[0]] +
-                              middle_[triangle][1] * mesh_.normals[corner[1]] +
-                              middle_[triangle][2] * mesh_.normals[corner[2]];
-  const float length = sum.norm();
-  return length > 1e-6f ? Eigen::Vector3f(sum / length) : mesh_.normals[corner[0]];
+  return core::normal_on(mesh_, triangle, middle_[triangle]);
 }
 
 }  // namespace sheen::fitting::detail

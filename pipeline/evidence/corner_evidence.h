@@ -18,10 +18,10 @@
 namespace sheen::pipeline {
 
 /// What is left of the tags' corners when every frame has its best pose, against the patterns that
-/// known faults leave there: another lens, a principal point
-/// elsewhere, a bent board, rows that are read one after the other.
-/// Poses take up most of such a fault; the rest of it, projected off the six freedoms of each pose,
-/// is fitted by one small linear least squares over all frames per fault.
+/// known faults leave there: another lens, a principal point elsewhere, a bent board, rows that are
+/// read one after the other. Poses take up most of such a fault; the rest of it, projected off the
+/// six freedoms of each pose, is fitted by one small linear least squares over all frames per
+/// fault.
 class CornerEvidence {
  public:
   CornerEvidence(const capture::Board& board, const core::CameraModel& camera);

@@ -65,18 +65,14 @@ ProjectOntoSurface onto_mesh(const TriangleTree& tree) {
   return [&tree](const Eigen::Vector3f& point) { return tree.closest(point).point; };
 }
 
-void recompute_normals(core::Mesh& mesh) {
-  mesh.normals.clear();
-  core::complete_normals(mesh);
-}
-
 void move_vertices(core::Mesh& mesh, const std::vector<float>& displacement, float largest_m) {
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     mesh.positions[i] += std::clamp(displacement[i], -largest_m, largest_m) * mesh.normals[i];
     // The sheet carries the object.
     mesh.positions[i].z() = std::max(mesh.positions[i].z(), 0.0F);
   }
-  recompute_normals(mesh);
+  mesh.normals.clear();
+  core::complete_normals(mesh);
 }
 
 /// How sure the vertices are: rims seen there, spread to neighbours, ten of them being enough.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "core/concurrency/parallel_for.h"
+#include "core/mesh/interpolation.h"
 #include "core/samples/vertex_view.h"
 #include "core/visibility/ray_caster.h"
-#include "fitting/between_patches.h"
 #include "render/surface/surface_renderer.h"
 
 #include <algorithm>
@@ -28,7 +28,6 @@ class ReferenceRenderer final : public Renderer {
                     int threads)
       : mesh_(mesh),
         light_field_(light_field),
-        between_(dynamic_cast<const fitting::BetweenPatches*>(&light_field)),
         threads_(threads),
         caster_(mesh),
         frames_(core::tangent_frames(mesh)) {
@@ -127,13 +126,9 @@ class ReferenceRenderer final : public Renderer {
   }
 
   [[nodiscard]] Eigen::Vector3f between(const PixelHit& hit) const {
-    if (between_ == nullptr) return kBlack;
-    const auto& corner = mesh_.triangles[hit.triangle_idx];
-    const Eigen::Vector3f place = hit.barycentric[0] * mesh_.positions[corner[0]] +
-                                  hit.barycentric[1] * mesh_.positions[corner[1]] +
-                                  hit.barycentric[2] * mesh_.positions[corner[2]];
-    return between_->between_patches(hit.triangle_idx, hit.barycentric,
-                                     (eye_ - place).normalized());
+    const Eigen::Vector3f place = core::place_on(mesh_, hit.triangle_idx, hit.barycentric);
+    return light_field_.between_patches(hit.triangle_idx, hit.barycentric,
+                                        (eye_ - place).normalized());
   }
 
   inline static const Eigen::Vector3f kBlack = Eigen::Vector3f::Zero();
@@ -142,7 +137,6 @@ class ReferenceRenderer final : public Renderer {
 
   const core::Mesh& mesh_;
   const fitting::PatchLightField& light_field_;
-  const fitting::BetweenPatches* between_;  ///< null: nothing
   int threads_;
   core::RayCaster caster_;
   Eigen::Vector3f eye_ = Eigen::Vector3f::Zero();

@@ -70,54 +70,45 @@ struct View {
   int most;  ///< difference, steps of 1/255
 };
 
+std::vector<View> views() {
+  return {{"a sphere", testing::sphere(0.1f, 20), testing::plain_camera(320, 240), 1},
+          {"a knot", testing::torus_knot(0.2f, 96, 12), testing::plain_camera(320, 240), 1},
+          {"large triangles through a lens", testing::tetrahedron(0.12f),
+           testing::distorted_camera(320, 240), 13}};
+}
+
+void expect_gpu_equals_reference(Context& context, const View& view,
+                                 const DetailLightField& model) {
+  const auto pose = testing::looking_at_origin({1, 0.4, 0.5}, 0.4);
+  const RenderedView gpu =
+      make_gl_surface_renderer(context, view.mesh, model)->render(view.camera, pose);
+  const RenderedView cpu =
+      make_reference_surface_renderer(view.mesh, model, 1)->render(view.camera, pose);
+  const cv::Mat interior = testing::common_interior(gpu.mask, cpu.mask, 2);
+  const testing::Difference found = testing::difference(gpu.image, cpu.image, interior);
+  std::cout << view.name << ": mean " << found.mean << " 99.9 % " << found.quantile_999 << " max "
+            << found.largest << " over " << found.pixels << " pixels\n";
+  EXPECT_GT(found.pixels, 3000u) << view.name;
+  EXPECT_LE(found.quantile_999, view.most) << view.name;
+}
+
 // Hardware reads textures with 8 bits between two texels, 1/2 of a step of 1/255 at most; places
 // are interpolated in single precision on both sides.
 TEST(DetailRenderer, GpuEqualsReference) {
-  const std::vector<View> views{
-      {"a sphere", testing::sphere(0.1f, 20), testing::plain_camera(320, 240), 1},
-      {"a knot", testing::torus_knot(0.2f, 96, 12), testing::plain_camera(320, 240), 1},
-      {"large triangles through a lens", testing::tetrahedron(0.12f),
-       testing::distorted_camera(320, 240), 13}};
   const auto context = make_osmesa_context();
-  for (const View& view : views) {
-    const DetailLightField model = random_detail(view.mesh);
-    const auto pose = testing::looking_at_origin({1, 0.4, 0.5}, 0.4);
-    const RenderedView gpu =
-        make_gl_surface_renderer(*context, view.mesh, model)->render(view.camera, pose);
-    const RenderedView cpu =
-        make_reference_surface_renderer(view.mesh, model, 1)->render(view.camera, pose);
-    const cv::Mat interior = testing::common_interior(gpu.mask, cpu.mask, 2);
-    const testing::Difference found = testing::difference(gpu.image, cpu.image, interior);
-    std::cout << view.name << ": mean " << found.mean << " 99.9 % " << found.quantile_999 << " max "
-              << found.largest << " over " << found.pixels << " pixels\n";
-    EXPECT_GT(found.pixels, 3000u) << view.name;
-    EXPECT_LE(found.quantile_999, view.most) << view.name;
+  for (const View& view : views()) {
+    expect_gpu_equals_reference(*context, view, random_detail(view.mesh));
   }
 }
 
 // Anchors blend on both sides alike, asked in either direction, where triangles are cut for a lens,
 // too.
 TEST(DetailRenderer, AnchorsOnTheGpuEqualTheReference) {
-  const std::vector<View> views{
-      {"a sphere", testing::sphere(0.1f, 20), testing::plain_camera(320, 240), 1},
-      {"large triangles through a lens", testing::tetrahedron(0.12f),
-       testing::distorted_camera(320, 240), 13}};
-  const auto pose = testing::looking_at_origin({1, 0.4, 0.5}, 0.4);
   const auto context = make_osmesa_context();
-  for (const View& view : views) {
+  for (const View& view : views()) {
     for (const auto asked :
          {fitting::detail::AskedDirection::same, fitting::detail::AskedDirection::mirrored}) {
-      const DetailLightField model = random_anchored(view.mesh, asked);
-      const RenderedView gpu =
-          make_gl_surface_renderer(*context, view.mesh, model)->render(view.camera, pose);
-      const RenderedView cpu =
-          make_reference_surface_renderer(view.mesh, model, 1)->render(view.camera, pose);
-      const cv::Mat interior = testing::common_interior(gpu.mask, cpu.mask, 2);
-      const testing::Difference found = testing::difference(gpu.image, cpu.image, interior);
-      std::cout << view.name << ": mean " << found.mean << " 99.9 % " << found.quantile_999
-                << " max " << found.largest << " over " << found.pixels << " pixels\n";
-      EXPECT_GT(found.pixels, 3000u);
-      EXPECT_LE(found.quantile_999, view.most) << view.name;
+      expect_gpu_equals_reference(*context, view, random_anchored(view.mesh, asked));
     }
   }
 }
