@@ -1,7 +1,8 @@
 # sheen_module(NAME SOURCES ... LINK ... PRECOMPILE ...): one static library per module, headers
 # included by their path from the repository root. PRECOMPILE names heavy headers that many of its
 # sources include, besides those that every module does; each source still includes what it uses. In
-# a unity build (presets release, asan, tsan) the sources of one folder are compiled as one.
+# a unity build (presets release, asan, tsan) the sources of one folder are compiled as one, and those
+# of the module's small folders, too.
 set(SHEEN_COMMON_HEADERS
   <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <optional> <string>
   <vector> <Eigen/Geometry> <opencv2/core.hpp>)
@@ -23,13 +24,24 @@ function(sheen_module name)
   target_precompile_headers(sheen_${name} PRIVATE ${SHEEN_COMMON_HEADERS} ${MODULE_PRECOMPILE})
 endfunction()
 
-# sheen_unity_folders(TARGET SOURCES ...): what a unity build compiles as one.
+# sheen_unity_folders(TARGET SOURCES ...): what a unity build compiles as one. Most of a compiler's time
+# goes into headers and templates, so small folders share it.
 function(sheen_unity_folders target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
   foreach(source IN LISTS ARGN)
     cmake_path(GET source PARENT_PATH folder)
-    string(MAKE_C_IDENTIFIER "${target}_${folder}" folder)
-    set_source_files_properties(${source} PROPERTIES UNITY_GROUP ${folder})
+    string(MAKE_C_IDENTIFIER "${target}_${folder}" group)
+    list(APPEND groups ${group})
+    list(APPEND sources_of_${group} ${source})
+  endforeach()
+  list(REMOVE_DUPLICATES groups)
+  foreach(group IN LISTS groups)
+    set(sources ${sources_of_${group}})
+    list(LENGTH sources count)
+    if(count LESS 5)
+      set(group "${target}_small_folders")
+    endif()
+    set_source_files_properties(${sources} PROPERTIES UNITY_GROUP ${group})
   endforeach()
 endfunction()
 

@@ -18,7 +18,7 @@ std::vector<std::uint8_t> front_of(std::span<const ComparedCandidate> rows, Cost
   return pareto_front(points);
 }
 
-void add(const Measurement& part, Measurement& sum) {
+void add(const CandidateMeasurement& part, CandidateMeasurement& sum) {
   sum.error.psnr_db += part.error.psnr_db;
   sum.live_psnr_db += part.live_psnr_db;
   sum.error.ssim += part.error.ssim;
@@ -42,7 +42,7 @@ void add(const Measurement& part, Measurement& sum) {
   sum.render_view_ms += part.render_view_ms;
 }
 
-void divide(Measurement& sum, std::size_t count) {
+void divide(CandidateMeasurement& sum, std::size_t count) {
   const auto divisor = static_cast<double>(count);
   for (double* figure :
        {&sum.error.psnr_db, &sum.live_psnr_db, &sum.error.ssim, &sum.error.rmse, &sum.worst_psnr_db,
@@ -61,9 +61,9 @@ void divide(Measurement& sum, std::size_t count) {
 }  // namespace
 
 void mark_fronts(std::span<ComparedCandidate> rows) {
-  const auto fit_time = front_of(rows, &Measurement::fit_frame_ms);
-  const auto render_time = front_of(rows, &Measurement::render_view_ms);
-  const auto bytes = front_of(rows, &Measurement::model_bytes);
+  const auto fit_time = front_of(rows, &CandidateMeasurement::fit_frame_ms);
+  const auto render_time = front_of(rows, &CandidateMeasurement::render_view_ms);
+  const auto bytes = front_of(rows, &CandidateMeasurement::model_bytes);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     rows[i].fronts = {fit_time[i] != 0, render_time[i] != 0, bytes[i] != 0};
   }

@@ -20,7 +20,7 @@ struct Fronts {
 struct ComparedCandidate {
   std::string session;
   Candidate candidate;
-  Measurement measured;
+  CandidateMeasurement measured;
   Fronts fronts;
 };
 

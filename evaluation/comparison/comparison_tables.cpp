@@ -7,13 +7,13 @@ namespace sheen::evaluation {
 namespace {
 
 /// None for models without patches.
-double coefficients_per_patch(const Measurement& measured) {
+double coefficients_per_patch(const CandidateMeasurement& measured) {
   if (measured.patches == 0) return 0;
   return static_cast<double>(measured.coefficients) / static_cast<double>(measured.patches);
 }
 
 nlohmann::ordered_json to_json(const ComparedCandidate& row) {
-  const Measurement& m = row.measured;
+  const CandidateMeasurement& m = row.measured;
   return {{"session", row.session},
           {"candidate", row.candidate.name},
           {"label", row.candidate.label},
@@ -74,7 +74,7 @@ std::string session_text(const Comparison& comparison, const ComparedSession& se
       "MB drawn", "fit ms", "render ms");
   for (const ComparedCandidate& row : comparison.rows) {
     if (row.session != session.name) continue;
-    const Measurement& m = row.measured;
+    const CandidateMeasurement& m = row.measured;
     std::string front = row.fronts.bytes ? " bytes" : "";
     if (row.fronts.fit_time) front += " fit";
     if (row.fronts.render_time) front += " render";

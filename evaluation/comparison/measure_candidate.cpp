@@ -108,7 +108,7 @@ SmoothPath path_through(const Observations& observations) {
 /// Saves, reads back and draws as another program would: size of the file, memory, jumps.
 void measure_saved(const fitting::LightField& light_field, const Observations& observations,
                    render::Context& gl, const std::filesystem::path& scratch, int threads,
-                   Measurement& measurement) {
+                   CandidateMeasurement& measurement) {
   fitting::write_model(scratch, observations.mesh, light_field);
   measurement.model_bytes = std::filesystem::file_size(scratch);
   std::size_t with_model = 0;
@@ -137,11 +137,11 @@ double texel_size_m(const Observations& observations) {
 
 }  // namespace
 
-Measurement measure_candidate(const Candidate& candidate, const Observations& observations,
+CandidateMeasurement measure_candidate(const Candidate& candidate, const Observations& observations,
                               render::Context& gl, const std::filesystem::path& scratch,
                               int threads, pipeline::ProgressSink& sink) {
   // Fit.
-  Measurement measurement;
+  CandidateMeasurement measurement;
   fitting::OptionValues values = candidate.options;
   if (pipeline::asks_texel_size(candidate.representation, values)) {
     pipeline::set_texel_size(texel_size_m(observations), values);

@@ -12,7 +12,7 @@
 namespace sheen::evaluation {
 
 /// Everything measured of one candidate on one recording.
-struct Measurement {
+struct CandidateMeasurement {
   core::ImageError error;    ///< means over the held-out views
   double live_psnr_db = 0;   ///< the same, with the model as it was after the last frame
   double worst_psnr_db = 0;  ///< of the worst view
@@ -35,7 +35,7 @@ struct Measurement {
 
 /// Fits, saves to `scratch` (removed again), draws the held-out views and compares. Throws
 /// core::Error (run_failed) for models the driver cannot draw.
-Measurement measure_candidate(const Candidate& candidate, const Observations& observations,
+CandidateMeasurement measure_candidate(const Candidate& candidate, const Observations& observations,
                               render::Context& gl, const std::filesystem::path& scratch,
                               int threads, pipeline::ProgressSink& sink);
 

@@ -14,7 +14,7 @@
 namespace sheen::evaluation {
 namespace {
 
-constexpr std::size_t kShownSamples = 64;
+constexpr std::size_t kSamplesShown = 64;
 
 std::vector<std::string> methods_of(std::span<const StabilityRow> rows) {
   return distinct(rows, [](const StabilityRow& row) { return row.method; });
@@ -109,7 +109,7 @@ std::vector<Table> error_against_samples(std::span<const StabilityRow> rows) {
 
 Table error_against_settings(std::span<const StabilityRow> rows, ViewSet views) {
   Table table{
-      fmt::format("RMS with {} samples, {}", kShownSamples, name_of(views)), {"method"}, {}};
+      fmt::format("RMS with {} samples, {}", kSamplesShown, name_of(views)), {"method"}, {}};
   std::vector<StabilityRow> of_views;
   std::copy_if(rows.begin(), rows.end(), std::back_inserter(of_views),
                [&](const StabilityRow& row) { return row.views == views; });
@@ -120,7 +120,7 @@ Table error_against_settings(std::span<const StabilityRow> rows, ViewSet views) 
     std::vector<std::string> line{method};
     for (const std::string& setting : settings) {
       line.push_back(
-          cell(find(rows, views, setting, kShownSamples, method), &StabilityRow::rms, 4));
+          cell(find(rows, views, setting, kSamplesShown, method), &StabilityRow::rms, 4));
     }
     table.rows.push_back(std::move(line));
   }
@@ -129,7 +129,7 @@ Table error_against_settings(std::span<const StabilityRow> rows, ViewSet views) 
 
 Table extrapolation(std::span<const StabilityRow> rows) {
   Table table{fmt::format("Worst error before clamping with {} samples (95th percentile of points)",
-                          kShownSamples),
+                          kSamplesShown),
               {"method"},
               {}};
   const std::vector<ViewSet> sets = view_sets_of(rows);
@@ -139,9 +139,9 @@ Table extrapolation(std::span<const StabilityRow> rows) {
     std::vector<std::string> line{method};
     for (const ViewSet views : sets) {
       line.push_back(
-          cell(find(rows, views, "base", kShownSamples, method), &StabilityRow::worst95, 2));
+          cell(find(rows, views, "base", kSamplesShown, method), &StabilityRow::worst95, 2));
     }
-    line.push_back(cell(find(rows, ViewSet::gap, "base", kShownSamples, method),
+    line.push_back(cell(find(rows, ViewSet::gap, "base", kSamplesShown, method),
                         &StabilityRow::rms_in_gap, 4));
     table.rows.push_back(std::move(line));
   }
@@ -192,7 +192,7 @@ Table stability_targets(std::span<const StabilityRow> rows, const std::string& m
               {"target", "wanted", "measured", "verdict"},
               {}};
   const auto on_arc = [&](const std::string& name) {
-    return find(rows, ViewSet::arc, "base", kShownSamples, name);
+    return find(rows, ViewSet::arc, "base", kSamplesShown, name);
   };
   const StabilityRow* ours = on_arc(method);
   for (const char* rival : {"sh 3", "sh 3 ridge .01"}) {

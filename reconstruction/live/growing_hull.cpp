@@ -13,7 +13,7 @@
 namespace sheen::reconstruction {
 namespace {
 
-constexpr std::size_t kFewestViews = 8;
+constexpr std::size_t kFewestViewsOfAHull = 8;
 constexpr double kMostTexels = 1e5;
 constexpr int kCells = 40;
 constexpr double kSettled = 0.05;  // change of the volume from one run of passes to the next
@@ -27,7 +27,7 @@ double volume_of(const DistanceGrid& grid) {
 }  // namespace
 
 bool GrowingHull::step(const WalkViews& walk) {
-  if (walk.views.size() < kFewestViews) return false;
+  if (walk.views.size() < kFewestViewsOfAHull) return false;
   if (began_with_ == 0 || walk.lenses != lenses_ || 3 * walk.views.size() >= 4 * began_with_) {
     pass_ = 0;
     shape_.reset();

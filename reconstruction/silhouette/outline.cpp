@@ -16,7 +16,7 @@ namespace {
 constexpr float kDeepInside_px = -1e4F;
 constexpr int kReach_px = 3;             // of a profile, to either side
 constexpr int kStepsPerPx = 2;           // of a profile
-constexpr float kLeastContrast = 0.08F;  // between object and background
+constexpr float kLeastContrastToBackground = 0.08F;  // between object and background
 constexpr float kLargestShift_px = 2;
 constexpr double kAlong_px = 1.5;  // over which shifts along the outline are averaged
 
@@ -73,7 +73,7 @@ std::optional<float> edge_shift(const cv::Mat& image, const Background& backgrou
     const cv::Vec3f stage = float_bilinear(background.colour, p.x, p.y);
     const cv::Vec3f contrast = object - stage;
     const float strength = contrast.dot(contrast);
-    if (strength < kLeastContrast * kLeastContrast) return std::nullopt;
+    if (strength < kLeastContrastToBackground * kLeastContrastToBackground) return std::nullopt;
     const float alpha =
         std::clamp((bilinear_bgr(image, p.x, p.y) - stage).dot(contrast) / strength, 0.0F, 1.0F);
     if (i == -steps + 1) first = alpha;

@@ -416,8 +416,8 @@ TEST_F(AddedRepresentation, IsComparedWithTheOthers) {
     comparison.rows.push_back({"session", candidate, measured, {}});
   }
   ASSERT_EQ(comparison.rows.size(), 2u);
-  const evaluation::Measurement& mean = comparison.rows[0].measured;
-  const evaluation::Measurement& colours = comparison.rows[1].measured;
+  const evaluation::CandidateMeasurement& mean = comparison.rows[0].measured;
+  const evaluation::CandidateMeasurement& colours = comparison.rows[1].measured;
   EXPECT_EQ(comparison.rows[1].candidate.name, kName);
   EXPECT_EQ(colours.views, 3u);
   EXPECT_EQ(colours.samples, mean.samples);

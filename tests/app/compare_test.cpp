@@ -112,8 +112,8 @@ TEST(Advice, NamesWhatPsnrDoesNotShow) {
 TEST(Advice, SaysWhereAnotherOneIsBetter) {
   std::vector<evaluation::ComparedCandidate> rows{figures("pick", 30.0, 10),
                                                   figures("other", 29.4, 100)};
-  evaluation::Measurement& pick = rows[0].measured;
-  evaluation::Measurement& other = rows[1].measured;
+  evaluation::CandidateMeasurement& pick = rows[0].measured;
+  evaluation::CandidateMeasurement& other = rows[1].measured;
   pick.worst_psnr_db = 21;
   other.worst_psnr_db = 24;
   pick.outline = {.box_psnr_db = 20, .edge_difference = 14, .hole_fraction = 0};
