@@ -138,8 +138,8 @@ double texel_size_m(const Observations& observations) {
 }  // namespace
 
 CandidateMeasurement measure_candidate(const Candidate& candidate, const Observations& observations,
-                              render::Context& gl, const std::filesystem::path& scratch,
-                              int threads, pipeline::ProgressSink& sink) {
+                                       render::Context& gl, const std::filesystem::path& scratch,
+                                       int threads, pipeline::ProgressSink& sink) {
   // Fit.
   CandidateMeasurement measurement;
   fitting::OptionValues values = candidate.options;

@@ -36,7 +36,7 @@ struct CandidateMeasurement {
 /// Fits, saves to `scratch` (removed again), draws the held-out views and compares. Throws
 /// core::Error (run_failed) for models the driver cannot draw.
 CandidateMeasurement measure_candidate(const Candidate& candidate, const Observations& observations,
-                              render::Context& gl, const std::filesystem::path& scratch,
-                              int threads, pipeline::ProgressSink& sink);
+                                       render::Context& gl, const std::filesystem::path& scratch,
+                                       int threads, pipeline::ProgressSink& sink);
 
 }  // namespace sheen::evaluation

@@ -93,7 +93,8 @@ StressBase render_stress_base(const StressOptions& options) {
   using namespace capture::synthetic;
   constexpr float lift_m = 0.01f;
   constexpr int held_out_factor = 4;  // cleaner than what is fitted
-  const capture::synthetic::Scene scene(SceneKind::mixed, torus_knot(options.vertices), lift_m, options.threads);
+  const capture::synthetic::Scene scene(SceneKind::mixed, torus_knot(options.vertices), lift_m,
+                                        options.threads);
   const core::CameraModel camera = synthetic_camera(options.width_px, options.height_px);
   const auto path = [&](const CameraPath::Options& walk) {
     return CameraPath(walk, scene.object_centre(), scene.object_radius_m());

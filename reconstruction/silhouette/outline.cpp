@@ -14,8 +14,8 @@ namespace sheen::reconstruction {
 namespace {
 
 constexpr float kDeepInside_px = -1e4F;
-constexpr int kReach_px = 3;             // of a profile, to either side
-constexpr int kStepsPerPx = 2;           // of a profile
+constexpr int kReach_px = 3;                         // of a profile, to either side
+constexpr int kStepsPerPx = 2;                       // of a profile
 constexpr float kLeastContrastToBackground = 0.08F;  // between object and background
 constexpr float kLargestShift_px = 2;
 constexpr double kAlong_px = 1.5;  // over which shifts along the outline are averaged
