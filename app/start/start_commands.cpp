@@ -138,7 +138,8 @@ std::string as_typed(const std::string& program, const Arguments& arguments) {
   std::string text = quoted(program);
   for (const std::string& argument : arguments) {
     const auto rest = below_home(argument);
-    text += rest ? " ~/" + quoted(*rest) : " " + quoted(argument);
+    text += rest ? " ~/" : " ";
+    text += quoted(rest ? *rest : argument);
   }
   return text;
 }
