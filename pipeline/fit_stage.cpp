@@ -65,7 +65,7 @@ void FitStage::observe(const capture::Frame& frame, core::StageTimes& times, Pos
     return;
   }
   fitting::note_seen(*samples, statistics_.seen);
-  integrated_.push_back({frame.index, camera_from_object, gain});
+  integrated_.push_back({frame.index, camera_from_object, gain, posed.readout_motion});
   const core::Observation observation{
       frame.index, frame.image, camera, camera_from_object, parts_.observer.view(),
       *samples,    gain,        depth_m};

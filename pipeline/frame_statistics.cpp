@@ -18,7 +18,8 @@ std::optional<PosedFrame> FrameStatistics::count(const TrackedFrame& tracked) {
   }
   const auto& pose = std::get<capture::FramePose>(tracked.pose);
   if (pose.tags > 0) reprojection_px.push_back(pose.reprojection_px);
-  return PosedFrame{tracked.frame.index, tracked.frame.time_s, pose.camera_from_board};
+  return PosedFrame{tracked.frame.index, tracked.frame.time_s, pose.camera_from_board,
+                    pose.readout_motion};
 }
 
 }  // namespace sheen::pipeline

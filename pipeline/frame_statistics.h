@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "capture/pose/edge_alignment.h"
 #include "core/samples/vertex_view.h"
 #include "fitting/confidence/confidence.h"
 
@@ -20,6 +21,7 @@ struct PosedFrame {
   int index = 0;
   double time_s = 0;
   Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
+  capture::Twist readout_motion = capture::Twist::Zero();  ///< of a rolling shutter
 };
 
 struct TrackedFrame;

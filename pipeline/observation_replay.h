@@ -13,9 +13,10 @@ namespace sheen::pipeline {
 
 /// Observes frames of a session once more, exactly as they were integrated: for fitters that look
 /// at images, which nobody keeps in memory. `views` are those wanted, frames ascending; `depth` may
-/// be null.
-void replay_observations(const capture::Session& session, std::span<const IntegratedView> views,
-                         ViewObserver& observer, const capture::DepthImages* depth,
+/// be null. `mesh` is the object's, as when they were integrated.
+void replay_observations(const capture::Session& session, const core::Mesh& mesh,
+                         std::span<const IntegratedView> views, ViewObserver& observer,
+                         const capture::DepthImages* depth,
                          const std::function<void(const core::Observation&)>& observe);
 
 }  // namespace sheen::pipeline

@@ -6,8 +6,9 @@
 namespace sheen::pipeline {
 
 PoseStage::PoseStage(std::unique_ptr<capture::FrameSource> frames,
-                     std::unique_ptr<capture::PoseEstimator> poses)
-    : frames_(std::move(frames)), poses_(std::move(poses)) {}
+                     std::unique_ptr<capture::PoseEstimator> poses,
+                     std::optional<RowRectifier> rectifier)
+    : frames_(std::move(frames)), poses_(std::move(poses)), rectifier_(std::move(rectifier)) {}
 
 std::optional<TrackedFrame> PoseStage::next(
     const std::function<bool(const capture::Frame&)>& is_wanted) {
@@ -22,6 +23,12 @@ std::optional<TrackedFrame> PoseStage::next(
   {
     const auto timing = tracked.times.measure("pose");
     tracked.pose = poses_->estimate(tracked.frame);
+  }
+  const auto* pose = std::get_if<capture::FramePose>(&tracked.pose);
+  if (rectifier_ && pose != nullptr && !pose->readout_motion.isZero()) {
+    const auto timing = tracked.times.measure("rectify");
+    tracked.frame =
+        rectifier_->rectify(tracked.frame, pose->camera_from_board, pose->readout_motion);
   }
   return tracked;
 }

@@ -127,7 +127,8 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
                     : capture::open_frames(session, options.frames.start, options.frames.end);
   frame_count = frames->frame_count();
   if (!is_live) check_stamps(session, options.frames, frame_count);
-  poses.emplace(std::move(frames), pose_estimator());
+  poses.emplace(std::move(frames), pose_estimator(),
+                RowRectifier(session, &object_mesh, options.threads));
   evidence.emplace(session, object_mesh, mesh.positions.size(),
                    board ? board->board : tag_board(session, options.frames.pose_source));
   stage.emplace(FitStage::Parts{
@@ -163,7 +164,7 @@ core::Mesh Reconstruction::Impl::read_mesh(ProgressSink& sink) {
 std::optional<MeshRefinement> Reconstruction::Impl::refine_mesh(ProgressSink& sink) const {
   if (!options.refine_mesh || is_live) return std::nullopt;
   PoseStage stills(capture::open_frames(session, options.frames.start, options.frames.end),
-                   pose_estimator());
+                   pose_estimator(), RowRectifier(session, &object_mesh, options.threads));
   return refine_mesh_heights(session, object_mesh, options.frames, stills, options.threads, sink);
 }
 
@@ -226,7 +227,7 @@ std::unique_ptr<fitting::Fitter> Reconstruction::Impl::make_fitter(
         // Of its own: the other one may be at work on the next frame's samples.
         ViewObserver again(mesh, make_visibility(visibility, mesh, options.threads), options.limits,
                            options.threads);
-        replay_observations(session, views, again, depth ? &*depth : nullptr, observe);
+        replay_observations(session, object_mesh, views, again, depth ? &*depth : nullptr, observe);
       });
   undoable = remembering.get();
   return remembering;

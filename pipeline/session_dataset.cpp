@@ -11,6 +11,7 @@
 #include "pipeline/object_mask.h"
 #include "pipeline/posed_views.h"
 #include "pipeline/reconstruct.h"
+#include "pipeline/session_readout.h"
 
 #include <fmt/format.h>
 #include <opencv2/imgproc.hpp>
@@ -21,8 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The fit that needs least: it tells which frames pass and the colours of the surface.
-Reconstruction fit_mean_colours(const capture::Session& session, const DatasetOptions& options,
+Reconstruction fit_mean_colours(capture::Session session, const DatasetOptions& options,
                                 ProgressSink& sink) {
+  complete_readout(session, options.frames, sink);
   ReconstructionOptions fit;
   fit.representation = "mean";
   fit.frames = options.frames;
@@ -65,9 +67,11 @@ double sharpness_of(const cv::Mat& image) {
   return deviation[0] * deviation[0];
 }
 
-/// Files that can be copied as they are, one per frame; none where images must be made.
+/// Files that can be copied as they are, one per frame; none where images must be made, as all are
+/// of a rolling shutter.
 std::vector<fs::path> files_to_copy(const capture::Session& session,
                                     const std::vector<PosedFrame>& frames) {
+  if (session.camera.intrinsics().readout_s != 0) return {};
   std::vector<int> indices;
   for (const PosedFrame& frame : frames) indices.push_back(frame.index);
   return capture::plain_pictures(session, indices);
@@ -101,7 +105,8 @@ capture::Dataset write_session_dataset(const capture::Session& given, const Data
   const HoldOut hold_out{options.frames.hold_out};
   fs::create_directories(folder / "images");
   for_each_view(
-      session, posed, [&](const capture::Frame& view, const Eigen::Isometry3d& camera_from_object) {
+      session, &mesh, posed,
+      [&](const capture::Frame& view, const Eigen::Isometry3d& camera_from_object) {
         const std::size_t i = dataset.frames.size();
         const std::string ending =
             files.empty() ? ".png" : core::lower_case(files[i].extension().string());

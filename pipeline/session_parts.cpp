@@ -30,7 +30,8 @@ std::unique_ptr<capture::PoseEstimator> make_pose_estimator(const capture::Sessi
                             "name a poses.txt under \"poses\" or take the poses from the tags");
     }
     return capture::make_recorded_pose_estimator(capture::read_trajectory(*session.poses),
-                                                 session.fps.value_or(kFallbackFps));
+                                                 session.fps.value_or(kFallbackFps),
+                                                 session.camera.intrinsics().readout_s);
   }
   if (!session.board) {
     throw core::bad_input(session_file, "has no board",

@@ -12,6 +12,7 @@
 #include "fitting/model_file/model_file.h"
 #include "pipeline/pose_frames.h"
 #include "pipeline/session_mesh.h"
+#include "pipeline/session_readout.h"
 #include "render/renderer.h"
 
 #include <fmt/format.h>
@@ -92,6 +93,7 @@ void run_evaluate(const EvaluateOptions& options, const CommandContext& context)
   capture::Session session = capture::open_session(options.session);
   TerminalSink sink(context);
   core::Mesh mesh = pipeline::read_session_mesh(session, sink);
+  pipeline::complete_readout(session, options.frames, sink);
   const auto views = pipeline::pose_frames(session, options.frames, sink);
   pipeline::SessionScene::check(session, mesh, options.frames.pose_source, views, sink);
   pipeline::face_cameras(mesh, session, poses_of(views), sink);

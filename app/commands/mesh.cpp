@@ -17,6 +17,7 @@
 #include "pipeline/hold_out.h"
 #include "pipeline/pose_frames.h"
 #include "pipeline/posed_views.h"
+#include "pipeline/session_readout.h"
 #include "reconstruction/object/object_mesh.h"
 
 #include <fmt/format.h>
@@ -73,7 +74,7 @@ std::vector<reconstruction::PosedImage> read_images(const capture::Session& sess
   for (std::size_t i = 0; i < count; ++i) chosen.push_back(posed[i * posed.size() / count]);
   std::vector<reconstruction::PosedImage> images;
   pipeline::for_each_view(
-      session, chosen,
+      session, nullptr, chosen,
       [&](const capture::Frame& frame, const Eigen::Isometry3d& camera_from_board) {
         images.push_back({frame.index, frame.image.clone(), camera_from_board});
         sink.progress({"reading", static_cast<int>(images.size()), static_cast<int>(count)});
@@ -184,9 +185,9 @@ void run_mesh(const MeshOptions& options, const CommandContext& context) {
   TerminalSink sink(context);
   check_nothing_is_replaced(options, capture::open_unfinished_session(options.session));
   WalkAnswer walk;
-  const capture::Session session =
-      open_walk(options.session, options.walk, options.frames, sink, walk);
+  capture::Session session = open_walk(options.session, options.walk, options.frames, sink, walk);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
+  pipeline::complete_readout(session, options.frames, sink);
   MeshAnswer answer = measure(options, session, sink, context);
   if (!walk.document.is_null()) answer.document["walk"] = walk.document;
   context.publish(answer.document, walk.text + answer.text);

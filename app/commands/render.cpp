@@ -9,6 +9,7 @@
 #include "pipeline/pose_frames.h"
 #include "pipeline/posed_views.h"
 #include "pipeline/session_mesh.h"
+#include "pipeline/session_readout.h"
 #include "render/renderer.h"
 
 #include <fmt/format.h>
@@ -30,13 +31,14 @@ void render_views(const RenderOptions& options, const CommandContext& context) {
   capture::Session session = capture::open_session(options.session);
   session.take_offset(model.mesh.offset);
   TerminalSink sink(context);
+  pipeline::complete_readout(session, options.frames, sink);
   const auto views = pipeline::pose_frames(session, options.frames, sink);
   pipeline::SessionScene::check(session, model.mesh, options.frames.pose_source, views, sink);
   const auto gl = render::make_osmesa_context();
   const auto renderer = render::make_renderer(*gl, model.mesh, *model.light_field, context.threads);
   int done = 0;
   pipeline::for_each_view(
-      session, views,
+      session, nullptr, views,
       [&](const capture::Frame& frame, const Eigen::Isometry3d& camera_from_object) {
         const auto view = renderer->render(session.camera_of(frame.index), camera_from_object);
         core::write_image(options.output / fmt::format("{:04d}.png", frame.index), view.image);

@@ -19,6 +19,7 @@
 #include "fitting/patch_light_field.h"
 #include "pipeline/posed_views.h"
 #include "pipeline/reconstruct.h"
+#include "pipeline/session_readout.h"
 #include "render/renderer.h"
 #include "render/visibility/depth_visibility.h"
 
@@ -138,7 +139,7 @@ std::vector<PosedFrame> refine_held_out(Reconstruction& fitted) {
   const std::vector<PosedFrame>& held_out = fitted.frames().held_out;
   std::vector<PosedFrame> refined;
   refined.reserve(held_out.size());
-  pipeline::for_each_view(fitted.session(), held_out,
+  pipeline::for_each_view(fitted.session(), &fitted.object_mesh(), held_out,
                           [&](const capture::Frame& frame, const Eigen::Isometry3d&) {
                             throw_if_interrupted();
                             refined.push_back(fitted.refined(frame, held_out[refined.size()]));
@@ -237,9 +238,12 @@ WalkAnswer complete_session(const ReplayOptions& options, capture::Session& sess
   WalkAnswer answer;
   session = open_walk(options.session, options.walk, frames, sink, answer);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
+  pipeline::complete_readout(session, frames, sink);
   if (!session.mesh.empty() || !session.board) return answer;
   const MeshAnswer mesh = add_measured_mesh(session, frames, sink, context);
+  const core::CameraModel camera = session.camera;  // with what was measured of it
   session = capture::open_session(session.folder);
+  session.camera = camera;
   answer.document["mesh"] = mesh.document;
   answer.text += mesh.text;
   return answer;

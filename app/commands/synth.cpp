@@ -145,6 +145,13 @@ void add_synth_command(CommandLine& program, CommandContext& context) {
       .one_of({kWalk, kTurntable})
       .show_default();
   add_image_options(command, *options);
+  command
+      .option("--readout-ms", session.readout_ms,
+              "A rolling shutter: milliseconds from the first row of a frame to the last; 0: all "
+              "rows at once")
+      .range(0, 33)
+      .type("MS")
+      .show_default();
   command.flag("--depth", session.depth,
                "Depth images beside the frames, too: depth/%04d.png, without noise");
   command.option("--seed", session.seed, "Seed of path, tremor and noise").type("N").show_default();

@@ -283,11 +283,25 @@ LensRecord record_of(const CameraDocument& document, const std::filesystem::path
   return matrix_record(reader);
 }
 
+/// Ours alone: no other program's file has it.
+double readout_s(const KeyReader& reader) {
+  constexpr double longest_ms = 200;
+  const double readout_ms = reader.number_of("readout_ms", 0);
+  if (!(std::abs(readout_ms) <= longest_ms)) {
+    reader.fail("readout_ms is not within 200 ms",
+                "give the milliseconds from a frame's first row to its last; 0: all at once");
+  }
+  return 1e-3 * readout_ms;
+}
+
 }  // namespace
 
 core::CameraModel read_camera(const std::filesystem::path& path) {
-  return camera_of(
-      record_of(parse_camera_document(read_text_file(path, kMostCameraBytes), path), path), path);
+  const CameraDocument document =
+      parse_camera_document(read_text_file(path, kMostCameraBytes), path);
+  auto intrinsics = camera_of(record_of(document, path), path).intrinsics();
+  intrinsics.readout_s = readout_s(KeyReader(document.keys, path));
+  return core::CameraModel(intrinsics);
 }
 
 void write_camera(const std::filesystem::path& path, const core::CameraModel& camera) {
@@ -312,6 +326,7 @@ void write_camera(const std::filesystem::path& path, const core::CameraModel& ca
   if (is_fisheye) storage << "fisheye_model" << 1;
   storage << "camera_matrix" << K << "distortion_coefficients"
           << cv::Mat(coefficients, true).reshape(1, 1);
+  if (intrinsics.readout_s != 0) storage << "readout_ms" << 1e3 * intrinsics.readout_s;
   core::write_file(path, storage.releaseAndGetString());
 }
 

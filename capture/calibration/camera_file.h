@@ -9,8 +9,8 @@ namespace sheen::capture {
 
 /// A camera file of any of the programs that docs/input.md names: OpenCV's FileStorage (YAML, XML,
 /// JSON), ROS' camera_info, Kalibr's camchain, Agisoft's calibration, COLMAP's cameras.txt,
-/// nerfstudio's transforms.json. Pixels are brought to OpenCV's convention. Throws core::Error
-/// (bad_input), for lenses that are not modelled too.
+/// nerfstudio's transforms.json; with our own key readout_ms beside theirs. Pixels are brought to
+/// OpenCV's convention. Throws core::Error (bad_input), for lenses that are not modelled too.
 core::CameraModel read_camera(const std::filesystem::path& path);
 
 /// Writes OpenCV's FileStorage form.

@@ -11,67 +11,102 @@
 namespace sheen::capture {
 namespace {
 
-using Vector7d = Eigen::Matrix<double, 7, 1>;
-using Matrix7d = Eigen::Matrix<double, 7, 7>;
+constexpr int kPose = 6;      // unknowns: the twist
+constexpr int kGlobal = 7;    // and the swell, always the last
+constexpr int kRolling = 13;  // and in between the motion during the readout
 
-double residual_px(const EdgeObservation& seen, const Vector7d& x) {
-  return seen.offset_px - seen.outward_by_twist.dot(x.head<6>()) - x[6];
+template <int N>
+using Unknowns = Eigen::Matrix<double, N, 1>;
+
+/// How an observation changes with the unknowns.
+template <int N>
+Unknowns<N> derivative(const EdgeObservation& seen) {
+  Unknowns<N> row;
+  if constexpr (N == kRolling) {
+    row << seen.outward_by_twist, seen.row_share * seen.outward_by_twist, 1;
+  } else {
+    row << seen.outward_by_twist, 1;
+  }
+  return row;
 }
 
-double median_residual(const std::vector<EdgeObservation>& observations, const Vector7d& x,
+template <int N>
+double median_residual(const std::vector<EdgeObservation>& observations, const Unknowns<N>& x,
                        std::vector<double>& scratch) {
   scratch.clear();
-  for (const EdgeObservation& seen : observations)
-    scratch.push_back(std::abs(residual_px(seen, x)));
+  for (const EdgeObservation& seen : observations) {
+    scratch.push_back(std::abs(seen.offset_px - derivative<N>(seen).dot(x)));
+  }
   return core::upper_median(scratch);
 }
 
 /// One step of reweighted least squares with Cauchy weights.
-std::optional<Vector7d> reweighted(const std::vector<EdgeObservation>& observations,
-                                   const Vector7d& x, double scale_px) {
+template <int N>
+std::optional<Unknowns<N>> reweighted(const std::vector<EdgeObservation>& observations,
+                                      const Unknowns<N>& x, double scale_px,
+                                      const ReadoutMotionPrior& prior) {
+  using Matrix = Eigen::Matrix<double, N, N>;
   // Keeps the swell at zero where it cannot be told from a change of distance: a single tag.
   constexpr double swell_prior = 0.01;
-  Matrix7d A = Matrix7d::Zero();
-  Vector7d g = Vector7d::Zero();
+  Matrix A = Matrix::Zero();
+  Unknowns<N> g = Unknowns<N>::Zero();
   double weight_sum = 0;
   for (const EdgeObservation& seen : observations) {
-    const double r = residual_px(seen, x) / scale_px;
+    const Unknowns<N> row = derivative<N>(seen);
+    const double r = (seen.offset_px - row.dot(x)) / scale_px;
     const double weight = 1 / (1 + r * r);
-    Vector7d row;
-    row << seen.outward_by_twist, 1;
     A.noalias() += weight * row * row.transpose();
     g += weight * seen.offset_px * row;
     weight_sum += weight;
   }
-  A(6, 6) += swell_prior * weight_sum;
+  A(N - 1, N - 1) += swell_prior * weight_sum;
+  if constexpr (N == kRolling) {
+    A.diagonal().template segment<6>(kPose) += prior.precision;
+    g.template segment<6>(kPose) += prior.precision.cwiseProduct(prior.mean);
+  }
   // Radians and metres differ in size: judge the pivots on a unit diagonal.
-  const Vector7d scale = A.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<Matrix7d> ldlt(scale.asDiagonal() * A * scale.asDiagonal());
+  const Unknowns<N> scale = A.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
+  const Eigen::LDLT<Matrix> ldlt(scale.asDiagonal() * A * scale.asDiagonal());
   constexpr double smallest_pivot = 1e-9;
   if (!(ldlt.vectorD().minCoeff() > smallest_pivot)) return std::nullopt;
-  return Vector7d(scale.cwiseProduct(ldlt.solve(scale.cwiseProduct(g))));
+  return Unknowns<N>(scale.cwiseProduct(ldlt.solve(scale.cwiseProduct(g))));
+}
+
+template <int N>
+std::optional<EdgeAlignment> align(const std::vector<EdgeObservation>& observations,
+                                   double finest_scale_px, std::vector<double>& scratch,
+                                   const ReadoutMotionPrior& prior) {
+  constexpr std::size_t fewest = 12;
+  constexpr int rounds = 5;
+  if (observations.size() < fewest) return std::nullopt;
+  Unknowns<N> x = Unknowns<N>::Zero();
+  for (int round = 0; round < rounds; ++round) {
+    const double scale =
+        std::max(finest_scale_px, 3 * median_residual<N>(observations, x, scratch));
+    const auto next = reweighted<N>(observations, x, scale, prior);
+    if (!next || !next->allFinite()) return std::nullopt;
+    x = *next;
+  }
+  EdgeAlignment found;
+  found.twist = x.template head<kPose>();
+  if constexpr (N == kRolling) found.readout_motion = x.template segment<6>(kPose);
+  found.swell_px = x[N - 1];
+  x[N - 1] = 0;
+  scratch.clear();
+  for (const EdgeObservation& seen : observations) {
+    scratch.push_back(std::abs(derivative<N>(seen).dot(x)));
+  }
+  found.moved_px = core::upper_median(scratch);
+  return found;
 }
 
 }  // namespace
 
 std::optional<EdgeAlignment> align_edges(const std::vector<EdgeObservation>& observations,
-                                         double finest_scale_px, std::vector<double>& scratch) {
-  constexpr std::size_t fewest = 12;
-  constexpr int rounds = 5;
-  if (observations.size() < fewest) return std::nullopt;
-  Vector7d x = Vector7d::Zero();
-  for (int round = 0; round < rounds; ++round) {
-    const double scale = std::max(finest_scale_px, 3 * median_residual(observations, x, scratch));
-    const auto next = reweighted(observations, x, scale);
-    if (!next || !next->allFinite()) return std::nullopt;
-    x = *next;
-  }
-  const Twist twist = x.head<6>();
-  scratch.clear();
-  for (const EdgeObservation& seen : observations) {
-    scratch.push_back(std::abs(seen.outward_by_twist.dot(twist)));
-  }
-  return EdgeAlignment{twist, x[6], core::upper_median(scratch)};
+                                         double finest_scale_px, std::vector<double>& scratch,
+                                         const std::optional<ReadoutMotionPrior>& prior) {
+  return prior ? align<kRolling>(observations, finest_scale_px, scratch, *prior)
+               : align<kGlobal>(observations, finest_scale_px, scratch, {});
 }
 
 Eigen::Isometry3d moved(const Eigen::Isometry3d& camera_from_board, const Twist& twist) {

@@ -2,6 +2,7 @@
 #include "capture/pose/edge_search.h"
 
 #include "capture/pose/edge_profile.h"
+#include "capture/pose/rolling_shutter.h"
 #include "core/numerics/median.h"
 
 #include <algorithm>
@@ -25,6 +26,10 @@ int outward_sign(const TagView& view) {
 
 }  // namespace
 
+double EdgeSearch::share_of(const EdgePoint& edge) const {
+  return row_share(edge.px.y(), camera_.height_px());
+}
+
 void EdgeSearch::find_steps(const cv::Mat& grey, const std::vector<TagView>& views,
                             double reach_modules) {
   constexpr std::size_t positions = 4;
@@ -41,7 +46,7 @@ void EdgeSearch::find_steps(const cv::Mat& grey, const std::vector<TagView>& vie
             edge ? EdgeProfile::sample(grey, edge->px, edge->outward, half_length_px)
                  : std::nullopt;
         const auto step = profile ? profile->strongest_step_px(outward_sign(view)) : std::nullopt;
-        if (step) observations_.push_back({edge->outward_by_twist, *step});
+        if (step) observations_.push_back({edge->outward_by_twist, *step, share_of(*edge)});
       }
     }
   }
@@ -129,8 +134,10 @@ void EdgeSearch::find_sides(const cv::Mat& grey, const std::vector<TagView>& vie
       const auto line = fit_line(positions);
       if (!line) continue;
       sides_.push_back({v, side, *line, outward});
-      observations_.push_back({near_begin->outward_by_twist, line->at(first_quarter)});
-      observations_.push_back({near_end->outward_by_twist, line->at(last_quarter)});
+      observations_.push_back(
+          {near_begin->outward_by_twist, line->at(first_quarter), share_of(*near_begin)});
+      observations_.push_back(
+          {near_end->outward_by_twist, line->at(last_quarter), share_of(*near_end)});
     }
   }
 }

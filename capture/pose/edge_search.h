@@ -44,6 +44,7 @@ class EdgeSearch {
   [[nodiscard]] const std::vector<Side>& sides() const { return sides_; }
 
  private:
+  [[nodiscard]] double share_of(const EdgePoint& edge) const;
   void measure_pair(const cv::Mat& grey, const TagView& view, std::size_t pair);
   [[nodiscard]] EdgePositions measure_side(const cv::Mat& grey, const TagView& view,
                                            std::size_t side,

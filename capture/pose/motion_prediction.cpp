@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "capture/pose/motion_prediction.h"
 
+#include "capture/pose/rolling_shutter.h"
+
 #include <algorithm>
 
 namespace sheen::capture {
@@ -39,6 +41,11 @@ void MotionPrediction::note(const Frame& frame, const Eigen::Isometry3d& camera_
 std::optional<Eigen::Isometry3d> MotionPrediction::last() const {
   if (!last_) return std::nullopt;
   return last_->camera_from_board;
+}
+
+std::optional<Twist> MotionPrediction::velocity() const {
+  if (!last_ || !(last_->interval_s > 0)) return std::nullopt;
+  return twist_between(Eigen::Isometry3d::Identity(), last_->motion) / last_->interval_s;
 }
 
 std::optional<Eigen::Isometry3d> MotionPrediction::predict(const Frame& frame) const {

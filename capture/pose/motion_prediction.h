@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "capture/pose/edge_alignment.h"
 #include "capture/source/frame.h"
 
 #include <Eigen/Geometry>
@@ -17,6 +18,10 @@ class MotionPrediction {
 
   /// The pose noted last: where the camera is if it has stopped.
   [[nodiscard]] std::optional<Eigen::Isometry3d> last() const;
+
+  /// How the board moved between the last two poses, a twist per second in the camera frame; no
+  /// value when they are not known, or not when they were taken.
+  [[nodiscard]] std::optional<Twist> velocity() const;
 
   /// camera_from_board, its rotation orthonormal; no value when no pose is known.
   [[nodiscard]] std::optional<Eigen::Isometry3d> predict(const Frame& frame) const;

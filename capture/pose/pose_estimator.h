@@ -2,6 +2,7 @@
 #pragma once
 
 #include "capture/pose/board.h"
+#include "capture/pose/edge_alignment.h"
 #include "capture/pose/trajectory.h"
 #include "capture/source/frame.h"
 #include "core/geometry/camera.h"
@@ -21,6 +22,9 @@ std::string_view name_of(PoseRejection rejection);
 /// Pose of the camera for one frame, with what speaks for it.
 struct FramePose {
   Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
+  /// How the board moves from the first row to the last (capture/pose/rolling_shutter.h); the pose
+  /// is that of the middle row.
+  Twist readout_motion = Twist::Zero();
   int tags = 0;                ///< tags that carried the estimate; 0 for poses from a file
   double reprojection_px = 0;  ///< root mean square over the corners that carried it
   double blur_px = 0;          ///< width of the tags' edges (10-90 %), 0 for poses from a file
@@ -46,12 +50,15 @@ class PoseEstimator {
 };
 
 /// Follows the board's tags by their edges; where the prediction fails it detects them in the whole
-/// image, in the same frame. Results depend on the frames alone, not on time.
+/// image, in the same frame. Of a camera with a rolling shutter (Intrinsics::readout_s) the motion
+/// during the readout is estimated, too. Results depend on the frames alone, not on time.
 std::unique_ptr<PoseEstimator> make_tag_pose_estimator(const Board& board,
                                                        const core::CameraModel& camera,
                                                        const PoseGate& gate);
 
-/// Looks poses up in a file.
-std::unique_ptr<PoseEstimator> make_recorded_pose_estimator(Trajectory trajectory, double fps);
+/// Looks poses up in a file, those of the middle row; how the camera moves while it reads a frame
+/// (`readout_s`, as Intrinsics has it) follows from the poses around.
+std::unique_ptr<PoseEstimator> make_recorded_pose_estimator(Trajectory trajectory, double fps,
+                                                            double readout_s = 0);
 
 }  // namespace sheen::capture

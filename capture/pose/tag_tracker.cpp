@@ -28,76 +28,105 @@ TagTracker::TagTracker(const Board& board, const core::CameraModel& camera, cons
 }
 
 std::optional<TrackedPose> TagTracker::track(const cv::Mat& grey,
-                                             const Eigen::Isometry3d& predicted) {
+                                             const Eigen::Isometry3d& predicted,
+                                             const std::optional<ExpectedReadout>& expected) {
   constexpr double min_correlation = 0.7;  // a wrong code of tag36h11 reaches 0.4
   if (grey.cols != camera_.width_px() || grey.rows != camera_.height_px()) return std::nullopt;
 
   // Come near, and keep the tags whose codes are where they should be.
-  Eigen::Isometry3d camera_from_board = predicted;
-  if (!approach(grey, camera_from_board)) return std::nullopt;
-  look(camera_from_board);
+  State state{predicted, expected ? expected->motion : Twist(Twist::Zero())};
+  if (!approach(grey, expected, state)) return std::nullopt;
+  look(state);
   std::erase_if(views_, [&](const TagView& view) {
     return view.pattern_correlation(camera_, grey) < min_correlation;
   });
 
   // Align with their edges.
   const auto blur_px = search_.measure_widths(grey, views_);
-  if (!blur_px || !align(grey, camera_from_board)) return std::nullopt;
+  if (!blur_px || !align(grey, expected, state)) return std::nullopt;
 
   // Say how well their corners fit.
-  measure_corners(camera_from_board);
-  TrackedPose pose{camera_from_board, drop_misfits(), 0, *blur_px};
+  measure_corners(state);
+  TrackedPose pose{state.camera_from_board, state.readout_motion, drop_misfits(), 0, *blur_px};
   if (corners_.empty()) return std::nullopt;
   pose.reprojection_px = tag_rms_px(corners_.begin(), corners_.end());
   return pose;
 }
 
-void TagTracker::look(const Eigen::Isometry3d& camera_from_board) {
+std::optional<TagView> TagTracker::view_of(const BoardTag& tag, const State& state) const {
+  return TagView::find(tag, camera_, state.camera_from_board, state.readout_motion);
+}
+
+void TagTracker::look(const State& state) {
   views_.clear();
   for (const BoardTag& tag : tags_) {
-    if (const auto view = TagView::find(tag, camera_, camera_from_board)) views_.push_back(*view);
+    if (const auto view = view_of(tag, state)) views_.push_back(*view);
   }
 }
 
-void TagTracker::look_again(const Eigen::Isometry3d& camera_from_board) {
+void TagTracker::look_again(const State& state) {
   for (TagView& view : views_) {
-    if (const auto moved_view = TagView::find(view.tag(), camera_, camera_from_board)) {
-      view = *moved_view;
-    }
+    if (const auto moved_view = view_of(view.tag(), state)) view = *moved_view;
   }
 }
 
-bool TagTracker::approach(const cv::Mat& grey, Eigen::Isometry3d& camera_from_board) {
+bool TagTracker::approach(const cv::Mat& grey, const std::optional<ExpectedReadout>& expected,
+                          State& state) {
   constexpr std::array<double, 4> reach_modules{1.6, 1.0, 0.6, 0.6};
   constexpr double scale_px = 0.5;  // steps are found to about a third of a pixel
   constexpr double near_px = 0.6;
   for (const double reach : reach_modules) {
-    look(camera_from_board);
+    look(state);
     search_.find_steps(grey, views_, reach);
-    const auto alignment = align_edges(search_.observations(), scale_px, room_);
+    const auto alignment = improve(scale_px, expected, state);
     if (!alignment) return false;
-    camera_from_board = moved(camera_from_board, alignment->twist);
     if (alignment->moved_px < near_px) return true;
   }
   return false;
 }
 
-bool TagTracker::align(const cv::Mat& grey, Eigen::Isometry3d& camera_from_board) {
+bool TagTracker::align(const cv::Mat& grey, const std::optional<ExpectedReadout>& expected,
+                       State& state) {
   constexpr int max_rounds = 4;
   constexpr double scale_px = 0.1;    // positions of a clean edge scatter by less
   constexpr double settled_px = 0.1;  // profiles are centred: another round would change nothing
   for (int round = 0; round < max_rounds; ++round) {
-    look_again(camera_from_board);
+    look_again(state);
     search_.find_sides(grey, views_);
-    const auto alignment = align_edges(search_.observations(), scale_px, room_);
+    const auto alignment = improve(scale_px, expected, state);
     if (!alignment) return false;
-    camera_from_board = moved(camera_from_board, alignment->twist);
     if (alignment->moved_px < settled_px) return true;
   }
   return false;
 }
 
-void TagTracker::measure_corners(const Eigen::Isometry3d& camera_from_board) {
+/// Aligns with the edges that were found last.
+std::optional<EdgeAlignment> TagTracker::improve(double scale_px,
+                                                 const std::optional<ExpectedReadout>& expected,
+                                                 State& state) {
+  const auto prior = expected ? std::optional(prior_of(*expected, state)) : std::nullopt;
+  const auto alignment = align_edges(search_.observations(), scale_px, room_, prior);
+  if (!alignment) return std::nullopt;
+  state.camera_from_board = moved(state.camera_from_board, alignment->twist);
+  state.readout_motion += alignment->readout_motion;
+  return alignment;
+}
+
+/// A turn and a shift that move the image alike cost alike.
+ReadoutMotionPrior TagTracker::prior_of(const ExpectedReadout& expected, const State& state) const {
+  constexpr double edge_px = 0.1;  // what an edge that was found scatters by
+  const double focal_px = camera_.intrinsics().focal_px.mean();
+  const double distance_m = state.camera_from_board.translation().norm();
+  const double turn = focal_px * edge_px / expected.deviation_px;
+  const double shift = turn / distance_m;
+  ReadoutMotionPrior prior;
+  prior.mean = expected.motion - state.readout_motion;
+  prior.precision << Eigen::Vector3d::Constant(turn * turn),
+      Eigen::Vector3d::Constant(shift * shift);
+  return prior;
+}
+
+void TagTracker::measure_corners(const State& state) {
   // Let the sides of each tag meet, against where it was when they were measured.
   corners_.clear();
   const auto& sides = search_.sides();
@@ -106,7 +135,7 @@ void TagTracker::measure_corners(const Eigen::Isometry3d& camera_from_board) {
     std::array<const EdgeSearch::Side*, 4> found{};
     for (; i < sides.size() && sides[i].view == view; ++i) found[sides[i].side] = &sides[i];
     const TagView& seen = views_[view];
-    const auto fitted = TagView::find(seen.tag(), camera_, camera_from_board);
+    const auto fitted = view_of(seen.tag(), state);
     if (!fitted) continue;
     for (std::size_t c = 0; c < 4; ++c) {
       const EdgeSearch::Side* before = found[(c + 3) % 4];

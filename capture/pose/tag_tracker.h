@@ -26,9 +26,16 @@ struct MeasuredCorner {
 /// Pose from the edges of all tags, with what speaks for it.
 struct TrackedPose {
   Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
-  int tags = 0;                ///< tags whose code was read and that fit the pose
-  double reprojection_px = 0;  ///< root mean square over the corners of those tags
-  double blur_px = 0;          ///< as `tag_edge_width` measures it
+  Twist readout_motion = Twist::Zero();  ///< of a rolling shutter
+  int tags = 0;                          ///< tags whose code was read and that fit the pose
+  double reprojection_px = 0;            ///< root mean square over the corners of those tags
+  double blur_px = 0;                    ///< as `tag_edge_width` measures it
+};
+
+/// What is known before of the motion while the rows of a rolling shutter are read.
+struct ExpectedReadout {
+  Twist motion = Twist::Zero();  ///< capture/pose/rolling_shutter.h
+  double deviation_px = 1;       ///< how far off that may be, in the image, > 0
 };
 
 /// Follows a board whose place is roughly known: searches the edges of its tags near their
@@ -40,18 +47,32 @@ class TagTracker {
   TagTracker(const Board& board, const core::CameraModel& camera, const TagFamily& family);
 
   /// No value when no pose near `predicted` explains the CV_8UC1 image; edges are found up to one
-  /// and a half modules away.
-  std::optional<TrackedPose> track(const cv::Mat& grey, const Eigen::Isometry3d& predicted);
+  /// and a half modules away. Rows are taken as read at once unless the motion of a readout is
+  /// expected: it is estimated, too, near what is expected.
+  std::optional<TrackedPose> track(const cv::Mat& grey, const Eigen::Isometry3d& predicted,
+                                   const std::optional<ExpectedReadout>& expected = std::nullopt);
 
   /// Corners measured by the last successful `track`; cut or covered ones are missing.
   [[nodiscard]] const std::vector<MeasuredCorner>& corners() const { return corners_; }
 
  private:
-  void look(const Eigen::Isometry3d& camera_from_board);
-  void look_again(const Eigen::Isometry3d& camera_from_board);
-  bool approach(const cv::Mat& grey, Eigen::Isometry3d& camera_from_board);
-  bool align(const cv::Mat& grey, Eigen::Isometry3d& camera_from_board);
-  void measure_corners(const Eigen::Isometry3d& camera_from_board);
+  /// Where the board is at the middle of the readout, and how it goes on.
+  struct State {
+    Eigen::Isometry3d camera_from_board;
+    Twist readout_motion;
+  };
+
+  [[nodiscard]] std::optional<TagView> view_of(const BoardTag& tag, const State& state) const;
+  void look(const State& state);
+  void look_again(const State& state);
+  bool approach(const cv::Mat& grey, const std::optional<ExpectedReadout>& expected, State& state);
+  bool align(const cv::Mat& grey, const std::optional<ExpectedReadout>& expected, State& state);
+  std::optional<EdgeAlignment> improve(double scale_px,
+                                       const std::optional<ExpectedReadout>& expected,
+                                       State& state);
+  [[nodiscard]] ReadoutMotionPrior prior_of(const ExpectedReadout& expected,
+                                            const State& state) const;
+  void measure_corners(const State& state);
   int drop_misfits();
 
   core::CameraModel camera_;

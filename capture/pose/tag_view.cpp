@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "capture/pose/tag_view.h"
 
+#include "capture/pose/rolling_shutter.h"
 #include "core/alignment/projection_derivative.h"
 
 #include <Eigen/Geometry>
@@ -44,12 +45,14 @@ std::optional<double> brightness(const cv::Mat& grey, const Eigen::Vector2d& px)
 }  // namespace
 
 std::optional<TagView> TagView::find(const BoardTag& tag, const core::CameraModel& camera,
-                                     const Eigen::Isometry3d& camera_from_board) {
+                                     const Eigen::Isometry3d& camera_from_board,
+                                     const Twist& readout_motion) {
   // Place the corners.
   TagView view;
   view.tag_ = &tag;
   for (std::size_t c = 0; c < 4; ++c) {
-    view.corners_in_camera_[c] = camera_from_board * tag.corners_in_board[c];
+    view.corners_in_camera_[c] =
+        when_its_row_is_read(camera, readout_motion, camera_from_board * tag.corners_in_board[c]);
     const auto px = camera.project(view.corners_in_camera_[c]);
     if (!px) return std::nullopt;
     view.corners_px_[c] = *px;

@@ -33,7 +33,8 @@ class TagView {
  public:
   /// No value for tags behind the camera, turned away, outside the image or too small to follow.
   static std::optional<TagView> find(const BoardTag& tag, const core::CameraModel& camera,
-                                     const Eigen::Isometry3d& camera_from_board);
+                                     const Eigen::Isometry3d& camera_from_board,
+                                     const Twist& readout_motion);
 
   [[nodiscard]] const BoardTag& tag() const { return *tag_; }
   [[nodiscard]] const std::array<Eigen::Vector2d, 4>& corners_px() const { return corners_px_; }
@@ -58,8 +59,8 @@ class TagView {
  private:
   TagView() = default;
 
-  const BoardTag* tag_ = nullptr;  // not owned, outlives the view
-  std::array<Eigen::Vector3d, 4> corners_in_camera_;
+  const BoardTag* tag_ = nullptr;                     // not owned, outlives the view
+  std::array<Eigen::Vector3d, 4> corners_in_camera_;  // each when its row is read
   std::array<Eigen::Vector2d, 4> corners_px_;
   std::array<double, 4> module_px_{};
 };

@@ -2,6 +2,7 @@
 #include "capture/pose/trajectory.h"
 
 #include "capture/files/text_file.h"
+#include "capture/pose/rolling_shutter.h"
 #include "core/diagnostics/error.h"
 #include "core/files/write_file.h"
 #include "core/text/number.h"
@@ -122,8 +123,26 @@ Trajectory::Trajectory(std::vector<Entry> entries, std::optional<Stamps> stamps)
 
 std::optional<Eigen::Isometry3d> Trajectory::board_from_camera(const Frame& frame,
                                                                double fps) const {
+  const Place place = place_of(frame, fps);
+  if (place == entries_.end()) return std::nullopt;
+  return place->board_from_camera;
+}
+
+std::optional<Twist> Trajectory::velocity(const Frame& frame, double fps) const {
+  constexpr double longest_s = 0.25;
+  const Place place = place_of(frame, fps);
+  if (place == entries_.end()) return std::nullopt;
+  const Place before = place == entries_.begin() ? place : std::prev(place);
+  const Place after = std::next(place) == entries_.end() ? place : std::next(place);
+  const double time_s = (after->stamp - before->stamp) / (stamps_ == Stamps::indices ? fps : 1);
+  if (!(time_s > 0) || time_s > longest_s) return std::nullopt;
+  return twist_between(before->board_from_camera.inverse(), after->board_from_camera.inverse()) /
+         time_s;
+}
+
+Trajectory::Place Trajectory::place_of(const Frame& frame, double fps) const {
   assert(fps > 0);
-  if (entries_.empty()) return std::nullopt;
+  if (entries_.empty()) return entries_.end();
   const bool are_indices = stamps_ == Stamps::indices;
   const double wanted = are_indices ? frame.index : frame.time_s;
   // A millionth of a second more: stamps are written with six digits.
@@ -138,8 +157,7 @@ std::optional<Eigen::Isometry3d> Trajectory::board_from_camera(const Frame& fram
     const auto before = std::prev(nearest);
     if (std::abs(before->stamp - wanted) < std::abs(nearest->stamp - wanted)) nearest = before;
   }
-  if (!(std::abs(nearest->stamp - wanted) <= tolerance)) return std::nullopt;
-  return nearest->board_from_camera;
+  return std::abs(nearest->stamp - wanted) <= tolerance ? nearest : entries_.end();
 }
 
 Trajectory read_trajectory(const std::filesystem::path& path) {

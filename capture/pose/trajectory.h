@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "capture/pose/edge_alignment.h"
 #include "capture/source/frame.h"
 
 #include <Eigen/Geometry>
@@ -37,7 +38,15 @@ class Trajectory {
   [[nodiscard]] std::optional<Eigen::Isometry3d> board_from_camera(const Frame& frame,
                                                                    double fps) const;
 
+  /// How the board moves in the camera frame about then, a twist per second, from the entries
+  /// before and after; no value where those are more than a quarter of a second apart.
+  [[nodiscard]] std::optional<Twist> velocity(const Frame& frame, double fps) const;
+
  private:
+  using Place = std::vector<Entry>::const_iterator;
+  /// The end where no entry belongs to the frame.
+  [[nodiscard]] Place place_of(const Frame& frame, double fps) const;
+
   std::vector<Entry> entries_;
   Stamps stamps_ = Stamps::indices;
 };

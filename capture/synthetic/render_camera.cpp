@@ -6,6 +6,7 @@
 #include "core/image/srgb_curve.h"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -59,14 +60,19 @@ Eigen::Vector3f RenderCamera::ray(int x, int y, float fx, float fy) const {
   return {ideal.x(), ideal.y(), 1};
 }
 
-Exposure RenderCamera::expose(const Scene& scene, const Eigen::Isometry3d& board_from_camera,
-                              int samples, std::uint32_t seed, int threads) const {
-  const Eigen::Vector3f eye = board_from_camera.translation().cast<float>();
-  const Eigen::Matrix3f board_from_axes = board_from_camera.linear().cast<float>();
+Exposure RenderCamera::expose(const Scene& scene,
+                              std::span<const Eigen::Isometry3d> board_from_camera, int samples,
+                              std::uint32_t seed, int threads) const {
+  assert(board_from_camera.size() == 1 ||
+         board_from_camera.size() == static_cast<std::size_t>(height_px_));
   Exposure exposure{cv::Mat(height_px_, width_px_, CV_32FC3),
                     cv::Mat(height_px_, width_px_, CV_32FC1)};
 
   const auto expose_pixel = [&](int x, int y) {
+    const Eigen::Isometry3d& pose =
+        board_from_camera[board_from_camera.size() == 1 ? 0 : static_cast<std::size_t>(y)];
+    const Eigen::Vector3f eye = pose.translation().cast<float>();
+    const Eigen::Matrix3f board_from_axes = pose.linear().cast<float>();
     // Shift one low-discrepancy set (Roberts' R2) differently in every pixel.
     const std::uint32_t bits =
         hash(seed, static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y));

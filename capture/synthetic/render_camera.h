@@ -8,6 +8,7 @@
 #include <opencv2/core/mat.hpp>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace sheen::capture::synthetic {
@@ -24,9 +25,15 @@ class RenderCamera {
   explicit RenderCamera(const core::CameraModel& camera);
 
   /// Averages `samples` rays over the square of every pixel (box filter, a shifted low-discrepancy
-  /// set per pixel). The result does not depend on `threads`.
+  /// set per pixel). `board_from_camera` is one pose for all rows, or one for each of a rolling
+  /// shutter. The result does not depend on `threads`.
+  [[nodiscard]] Exposure expose(const Scene& scene,
+                                std::span<const Eigen::Isometry3d> board_from_camera, int samples,
+                                std::uint32_t seed, int threads) const;
   [[nodiscard]] Exposure expose(const Scene& scene, const Eigen::Isometry3d& board_from_camera,
-                                int samples, std::uint32_t seed, int threads) const;
+                                int samples, std::uint32_t seed, int threads) const {
+    return expose(scene, {&board_from_camera, 1}, samples, seed, threads);
+  }
 
   /// Depth along the optical axis of what the middle of every pixel shows, metres: CV_32FC1, 0
   /// where nothing is. The result does not depend on `threads`.

@@ -70,6 +70,20 @@ std::vector<Trajectory::Entry> walk(const CameraPath& path, int views, bool clos
   return entries;
 }
 
+/// Of one frame of a walk: the pose of its middle, or of each row while it is read.
+std::vector<Eigen::Isometry3d> poses_of_rows(const CameraPath& path, std::size_t frame,
+                                             const SyntheticOptions& options) {
+  const int rows = options.readout_ms > 0 ? options.height_px : 1;
+  const double last = options.path == PathKind::turntable ? options.frames : options.frames - 1;
+  const double readout = 1e-3 * options.readout_ms * kFps;  // in frames
+  std::vector<Eigen::Isometry3d> poses;
+  for (int y = 0; y < rows; ++y) {
+    const double share = (y + 0.5) / rows - 0.5;
+    poses.push_back(path.board_from_camera((static_cast<double>(frame) + share * readout) / last));
+  }
+  return poses;
+}
+
 /// Files both sessions have: session.json, camera.yaml, object.ply.
 void write_common(const fs::path& folder, const Scene& scene, const SyntheticOptions& options,
                   const core::CameraModel& camera, SessionFile session) {
@@ -130,8 +144,9 @@ void write_recording(const fs::path& folder, const Scene& scene, const core::Cam
   const RenderCamera render_camera(camera);
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const std::uint32_t seed = hash(options.seed, static_cast<std::uint32_t>(i));
-    const Exposure exposure = render_camera.expose(scene, poses[i].board_from_camera,
-                                                   options.samples, seed, options.threads);
+    const std::vector<Eigen::Isometry3d> rows = poses_of_rows(path, i, options);
+    const Exposure exposure =
+        render_camera.expose(scene, rows, options.samples, seed, options.threads);
     video.append(develop(exposure.light, SensorNoise{}, hash(seed, 1U)));
     if (options.depth) {
       const cv::Mat depth_m =
@@ -177,6 +192,9 @@ void SyntheticOptions::check() const {
   require_range("held-out", held_out, 0, 10'000);
   require_range("samples", samples, 1, 256);
   require_range("quality", jpeg_quality, 1, 100);
+  if (!(readout_ms >= 0 && readout_ms <= 1000.0 / kFps)) {
+    throw std::invalid_argument("readout-ms: must be 0 to 33, the time from frame to frame");
+  }
   if (threads < 1) throw std::invalid_argument("threads: must be at least 1");
 }
 

@@ -33,6 +33,8 @@ struct SyntheticOptions {
   int held_out = 12;       ///< views apart from it, [0, 10000]
   int samples = 8;         ///< rays per pixel of a frame, [1, 256]
   int jpeg_quality = 93;   ///< of the video, [1, 100]
+  double readout_ms = 0;   ///< from the first row of a frame to the last, [0, 33]; not told in
+                           ///< camera.yaml, and not of held-out views
   bool depth = false;      ///< depth images of the recording's frames, too, without noise
   std::uint32_t seed = 1;  ///< of path, tremor and noise
   int threads = 1;         ///< >= 1

@@ -22,6 +22,9 @@ class CameraModel {
     /// Of a rational lens k1 k2 p1 p2 k3 k4 k5 k6, of a fisheye k1 k2 k3 k4; the others are zero.
     std::array<double, 8> distortion{};
     LensKind lens = LensKind::rational;
+    /// From when the first row is read to when the last one is; 0 for a global shutter, negative
+    /// for one that reads upwards.
+    double readout_s = 0;
 
     friend bool operator==(const Intrinsics&, const Intrinsics&) = default;
   };

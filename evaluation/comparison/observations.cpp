@@ -11,6 +11,7 @@
 #include "pipeline/pose_frames.h"
 #include "pipeline/session_mesh.h"
 #include "pipeline/session_parts.h"
+#include "pipeline/session_readout.h"
 
 #include <utility>
 
@@ -26,9 +27,9 @@ void observe_frames(const pipeline::FrameChoice& choice, int threads, pipeline::
                     Observations& observations) {
   const capture::Session& session = observations.session;
   const pipeline::HoldOut hold_out{observations.has_own_held_out ? 0 : choice.hold_out};
-  pipeline::PoseStage poses(
-      capture::open_frames(session, choice.start, choice.end),
-      pipeline::make_pose_estimator(session, choice.pose_source, choice.gate));
+  pipeline::PoseStage poses(capture::open_frames(session, choice.start, choice.end),
+                            pipeline::make_pose_estimator(session, choice.pose_source, choice.gate),
+                            pipeline::RowRectifier(session, &observations.mesh, threads));
   pipeline::ViewObserver observer = make_observer(observations.mesh, threads);
   pipeline::FrameStatistics frames;
   std::size_t samples = 0;
@@ -49,7 +50,7 @@ void observe_frames(const pipeline::FrameChoice& choice, int threads, pipeline::
     const auto observation = observer.observe(posed->index, tracked.frame.image,
                                               session.camera_of(posed->index), camera_from_object);
     evidence.look_at(tracked.frame, posed->camera_from_board, observation);
-    observations.views.push_back({posed->index, camera_from_object, 1});
+    observations.views.push_back({posed->index, camera_from_object, 1, posed->readout_motion});
     observations.samples.push_back(observation.samples);
     samples += observation.samples.size();
   });
@@ -75,6 +76,7 @@ Observations observe_session(const std::filesystem::path& folder,
                              pipeline::ProgressSink& sink) {
   Observations observations;
   observations.session = capture::open_session(folder);
+  pipeline::complete_readout(observations.session, choice, sink);
   observations.mesh = pipeline::read_session_mesh(observations.session, sink);
   pipeline::face_cameras(observations.mesh, observations.session,
                          pipeline::probe_poses(observations.session, choice), sink);
@@ -102,8 +104,8 @@ void integrate_all(const Observations& observations, int threads, fitting::Fitte
     pipeline::ViewObserver observer = make_observer(observations.mesh, threads);
     std::optional<capture::DepthImages> depth;
     if (observations.session.depth && fitter.needs_depth()) depth.emplace(observations.session);
-    pipeline::replay_observations(observations.session, observations.views, observer,
-                                  depth ? &*depth : nullptr, integrate);
+    pipeline::replay_observations(observations.session, observations.mesh, observations.views,
+                                  observer, depth ? &*depth : nullptr, integrate);
     return;
   }
   const cv::Mat no_image;

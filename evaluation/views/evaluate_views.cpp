@@ -14,7 +14,7 @@ std::vector<EvaluationSummary> evaluate_views(
   std::vector<render::RenderedView> rendered(renderers.size());
   std::vector<ViewError> view_errors(renderers.size());
   pipeline::for_each_view(
-      views.session, views.frames,
+      views.session, &views.mesh, views.frames,
       [&](const capture::Frame& frame, const Eigen::Isometry3d& camera_from_object) {
         const core::CameraModel& camera = views.session.camera_of(frame.index);
         const cv::Mat mask = object.seen_by(camera, camera_from_object);

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/pose/edge_alignment.h"
+#include "capture/session/session.h"
+#include "capture/source/frame.h"
+#include "core/mesh/mesh.h"
+#include "core/samples/surface_points.h"
+#include "core/samples/vertex_view.h"
+#include "core/visibility/depth_image.h"
+
+#include <Eigen/Geometry>
+#include <opencv2/core/mat.hpp>
+
+#include <optional>
+#include <vector>
+
+namespace sheen::pipeline {
+
+/// Undoes a rolling shutter (docs/algorithm.md, 10): makes of a frame the image that a global
+/// shutter would have taken at its middle, so that whatever comes after knows one pose a frame.
+/// What a pixel shows is taken to lie on the mesh, or on the board's plane. Keeps its storage from
+/// frame to frame.
+class RowRectifier {
+ public:
+  /// Copies what it needs from the mesh; without one all lies on the board.
+  RowRectifier(const capture::Session& session, const core::Mesh* mesh, int threads);
+
+  /// The frame itself, untouched, where nothing moved. Else without luma (Frame::grey), and of the
+  /// image's border what the sensor did not see repeats what it saw.
+  capture::Frame rectify(const capture::Frame& frame, const Eigen::Isometry3d& camera_from_board,
+                         const capture::Twist& readout_motion);
+
+ private:
+  /// Where a rolling shutter shows what a global one shows at the nodes of a grid, px, per depth.
+  struct Nodes {
+    std::vector<Eigen::Vector2f> far, near;  ///< infinitely far, and at `nearest` (1/m)
+    float nearest = 0;
+  };
+
+  void see(const Eigen::Isometry3d& camera_from_board);
+  void place_nodes(const capture::Twist& readout_motion);
+  void fill_map(const Eigen::Isometry3d& camera_from_board);
+  [[nodiscard]] float inverse_depth(int x, int y, const Eigen::Vector3f& plane) const;
+
+  core::CameraModel camera_;
+  Eigen::Isometry3d board_from_object_;
+  int threads_;
+  int columns_ = 0, rows_ = 0;         ///< of the grid
+  std::vector<Eigen::Vector2f> rays_;  ///< of its nodes, in the plane z = 1
+  core::SurfacePoints points_;
+  std::optional<core::DepthImage> depth_;
+  core::VertexView view_;
+  Nodes nodes_;
+  cv::Mat map_;  ///< CV_32FC2
+};
+
+}  // namespace sheen::pipeline

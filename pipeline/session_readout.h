@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "capture/session/session.h"
+#include "pipeline/options.h"
+#include "pipeline/progress_sink.h"
+
+#include <optional>
+
+namespace sheen::pipeline {
+
+/// How a camera reads its rows.
+struct Readout {
+  double readout_s = 0;  ///< as Intrinsics::readout_s
+  double sigma_s = 0;    ///< standard deviation of it
+};
+
+/// Measures from three short stretches of a video how long its camera takes to read a frame: how
+/// tags are bent in frames against how the camera moves from frame to frame. No value for a global
+/// shutter, for recordings that do not tell (a camera at rest, single pictures, poses from a file)
+/// and where the motion explains less than half of the bending.
+std::optional<Readout> measure_readout(const capture::Session& session, const FrameChoice& choice);
+
+/// Measures it where the camera file does not say and puts it into the session's camera, with a
+/// note.
+void complete_readout(capture::Session& session, const FrameChoice& choice, ProgressSink& sink);
+
+}  // namespace sheen::pipeline
