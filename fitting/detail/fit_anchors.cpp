@@ -73,9 +73,9 @@ class Residuals {
                                     offsets_[triangle + 1] - offsets_[triangle]);
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     float weight = 0;
+    const LevelAtPlace place = anchors.level_at(level, triangle, samples_.middle(triangle));
     for (Sample& one : samples) {
-      const Eigen::Vector3f said =
-          anchors.colour_of_level(level, triangle, samples_.middle(triangle), one.w);
+      const Eigen::Vector3f said = place.colour(one.w);
       one.left += std::exchange(one.said[level], said) - said;
       sum += one.weight * one.left;
       weight += one.weight;
