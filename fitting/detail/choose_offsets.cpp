@@ -13,7 +13,7 @@
 
 #include <cmath>
 #include <cstddef>
-#include <numeric>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -35,7 +35,11 @@ class VertexOffsets {
         for (std::size_t vertex = begin; vertex < end; ++vertex) {
           frames_[vertex] = core::tangent_frame(mesh.normals[vertex]);
           const auto samples = fitted_samples(patches, vertex, workspace.samples);
-          if (!samples.empty()) chosen[vertex] = workspace.selection.choose(samples).model;
+          if (samples.empty()) {
+            chosen[vertex].coefficient[0].setZero();
+          } else {
+            chosen[vertex] = workspace.selection.choose(samples).model;
+          }
         }
       });
     });
