@@ -175,6 +175,8 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
           {"model_bytes", report.model_bytes},
           {"peak_rss_bytes", peak_rss_bytes()},
           {"representation", report.representation},
+          {"choice", report.fit.choice.empty() ? nlohmann::ordered_json(nullptr)
+                                               : nlohmann::ordered_json(report.fit.choice)},
           {"held_out", held_out_json(report.held_out)},
           {"held_out_mean_colour", held_out_json(report.held_out_mean)},
           {"held_out_refined_poses", held_out_json(report.held_out_refined_poses)},
@@ -198,6 +200,7 @@ std::string to_text(const ReplayReport& report) {
   std::string text = frames_text(report.frames);
   if (report.mesh) text += mesh_text(*report.mesh);
   text += model_text(report);
+  if (!report.fit.choice.empty()) text += fmt::format("         {}\n", report.fit.choice);
   text += fmt::format(
       "fit      {} samples, {:.1f} least-squares fits per patch per view, {:.0f} ms at the end\n",
       report.fit.samples, fits_per_patch_per_view(report.fit), report.finish_ms);

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 namespace sheen::fitting {
@@ -27,6 +28,8 @@ struct FitStatistics {
       0;  ///< (patch, view) pairs seen: the denominator of fits per patch per view
   /// Error that the fit does not mind, sRGB, given or estimated; nothing where there is none.
   std::optional<float> tolerance{};
+  /// What `finish` chose where the choice was left to it, and why: a line. Empty: nothing.
+  std::string choice{};
 };
 
 /// A light field under construction: integrates one observation after the other.

@@ -96,6 +96,18 @@ void add_confidence(const fitting::SeenDirections& seen, PackedArrays& tables) {
   tables.add("confidence", cells, fitting::guidance::kCellCount, 1);
 }
 
+json add_anchors(const AnchorTexels& anchors, PackedArrays& tables) {
+  const std::vector<std::int32_t> values(anchors.values.begin(), anchors.values.end());
+  tables.add("anchors", values, 4 * anchors.texels_per_anchor, 2);
+  tables.add("anchorVertices", anchors.vertices, 1, 4);
+  tables.add("blended", anchors.blended, anchors.blended_per_vertex, 4);
+  tables.add("blendWeights", anchors.weights, anchors.blended_per_vertex, 2);
+  return {{"texels", anchors.texels_per_anchor},
+          {"step", anchors.step},
+          {"lastStep", 1},
+          {"mirrored", anchors.mirrored}};
+}
+
 json size_mm(const core::Mesh& mesh) {
   const Eigen::Vector3f size = 1000 * core::bounds_of(mesh).sizes();
   return {std::lround(size.x()), std::lround(size.y()), std::lround(size.z())};
@@ -134,6 +146,7 @@ Page make_page(const fitting::Model& model, const Options& options) {
   document["surface"] = add_surface(model.mesh, split ? &*split : nullptr, tables);
   const std::vector<std::int32_t> values(texels.values.begin(), texels.values.end());
   tables.add("patches", values, 4 * texels.texels_per_patch, 2);
+  if (texels.anchors) document["anchors"] = add_anchors(*texels.anchors, tables);
   if (texture == nullptr) add_means(patches, tables);
   add_confidence(model.seen, tables);
   const std::string packed = tables.compressed();

@@ -209,16 +209,57 @@ PatchTexels sparse_texels(const core::Mesh& /*mesh*/, const fitting::LightField&
   return std::move(texels);
 }
 
+using fitting::detail::AnchoredOffsets;
+
+/// What every vertex blends, level after level.
+void add_blends(const core::Mesh& mesh, const AnchoredOffsets& anchors, AnchorTexels& texels) {
+  constexpr float weight_steps = 65535.0f;
+  constexpr std::size_t per_level = fitting::detail::kMostBlended;
+  texels.blended_per_vertex = per_level * anchors.levels().size();
+  texels.blended.assign(texels.blended_per_vertex * mesh.positions.size(), 0);
+  texels.weights = texels.blended;
+  for (std::size_t level = 0; level < anchors.levels().size(); ++level) {
+    const auto& [vertices, spacing_m] = anchors.levels()[level];
+    texels.vertices.insert(texels.vertices.end(), vertices.begin(), vertices.end());
+    const auto blends = fitting::detail::blend_anchors(mesh, vertices, spacing_m);
+    for (std::size_t vertex = 0; vertex < blends.size(); ++vertex) {
+      for (std::size_t i = 0; i < per_level && blends[vertex].weight[i] > 0.0f; ++i) {
+        const std::size_t at = vertex * texels.blended_per_vertex + per_level * level + i;
+        texels.blended[at] =
+            static_cast<std::int32_t>(anchors.first_of(level) + blends[vertex].anchor[i]);
+        texels.weights[at] =
+            static_cast<std::int32_t>(std::lround(weight_steps * blends[vertex].weight[i]));
+      }
+    }
+  }
+}
+
+std::pair<std::unique_ptr<const AnchorTexels>, std::shared_ptr<const AnchoredOffsets>>
+anchor_texels(const core::Mesh& mesh, const AnchoredOffsets& anchors) {
+  auto [patches, rounded_models] = rounded_patches(anchors.models());
+  auto texels = std::make_unique<AnchorTexels>();
+  texels->texels_per_anchor = patches.texels_per_patch;
+  texels->values = std::move(patches.values);
+  texels->step = patches.step;
+  texels->mirrored = anchors.asked() == fitting::detail::AskedDirection::mirrored;
+  add_blends(mesh, anchors, *texels);
+  return {std::move(texels),
+          std::make_shared<const AnchoredOffsets>(mesh, anchors.levels(), anchors.asked(),
+                                                  std::move(rounded_models))};
+}
+
 PatchTexels detail_texels(const core::Mesh& mesh, const fitting::LightField& light_field) {
   using fitting::detail::DetailLightField;
   const auto& detail = dynamic_cast<const DetailLightField&>(light_field);
-  if (detail.anchors()) {
-    throw core::bad_input("the model",
-                          "has its directions at anchors, which the web viewer does not draw",
-                          "fit with --offsets vertex");
-  }
   auto [texels, offsets] = rounded_patches(detail.offsets());
-  texels.rounded = std::make_unique<DetailLightField>(mesh, detail.texture(), std::move(offsets));
+  auto rounded_model =
+      std::make_unique<DetailLightField>(mesh, detail.texture(), std::move(offsets));
+  if (detail.anchors()) {
+    auto [anchors, rounded_anchors] = anchor_texels(mesh, *detail.anchors());
+    texels.anchors = std::move(anchors);
+    rounded_model->set_anchors(std::move(rounded_anchors));
+  }
+  texels.rounded = std::move(rounded_model);
   return std::move(texels);
 }
 

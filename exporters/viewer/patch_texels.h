@@ -12,6 +12,19 @@
 
 namespace sheen::exporters::viewer {
 
+/// Offsets at anchors, that the page blends within triangles as render/detail/detail.glsl does.
+struct AnchorTexels {
+  std::size_t texels_per_anchor = 1;
+  /// As those of patches; the number behind the colour is a whole one.
+  std::vector<std::int16_t> values;
+  double step = 1;
+  bool mirrored = false;
+  std::vector<std::int32_t> vertices;  ///< of every anchor
+  /// Per vertex of the mesh so many: anchors that it blends, and the weights, of 65535.
+  std::size_t blended_per_vertex = 0;
+  std::vector<std::int32_t> blended, weights;
+};
+
 /// The patches of a light field as the native shaders read them (render/NAME/NAME.glsl), in whole
 /// numbers.
 struct PatchTexels {
@@ -21,6 +34,8 @@ struct PatchTexels {
   double step = 1, last_step = 1;
   /// What the shader is told besides: "shader" names it.
   nlohmann::json shader;
+  /// Null: there are none.
+  std::unique_ptr<const AnchorTexels> anchors;
   /// The light field with its coefficients rounded in the same way.
   std::unique_ptr<const fitting::LightField> rounded;
 };

@@ -59,24 +59,30 @@ AnchoredOffsets::AnchoredOffsets(const core::Mesh& mesh, std::vector<AnchorLevel
 
 Eigen::Vector3f AnchoredOffsets::colour(std::size_t triangle, const Eigen::Vector3f& barycentric,
                                         const Eigen::Vector3f& w) const {
-  return colour_of(0, first_.back(), triangle, barycentric, w);
-}
-
-Eigen::Vector3f AnchoredOffsets::colour_of_level(std::size_t level, std::size_t triangle,
-                                                 const Eigen::Vector3f& barycentric,
-                                                 const Eigen::Vector3f& w) const {
-  return colour_of(first_[level], first_[level + 1], triangle, barycentric, w);
-}
-
-Eigen::Vector3f AnchoredOffsets::colour_of(std::size_t first, std::size_t end, std::size_t triangle,
-                                           const Eigen::Vector3f& barycentric,
-                                           const Eigen::Vector3f& w) const {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   const Eigen::Vector3f n = core::normal_on(mesh_, triangle, barycentric);
   for (const CornerWeights& blend : blends(triangle)) {
-    if (blend.anchor < first || blend.anchor >= end) continue;
     if (models_.term_count(blend.anchor) == 1) continue;
     sum += blend.at(barycentric) * models_.colour(blend.anchor, uv_at(blend.anchor, n, w));
+  }
+  return sum;
+}
+
+LevelAtPlace AnchoredOffsets::level_at(std::size_t level, std::size_t triangle,
+                                       const Eigen::Vector3f& barycentric) const {
+  LevelAtPlace place(*this, core::normal_on(mesh_, triangle, barycentric));
+  for (const CornerWeights& blend : blends(triangle)) {
+    if (blend.anchor < first_[level] || blend.anchor >= first_[level + 1]) continue;
+    if (models_.term_count(blend.anchor) == 1) continue;
+    place.parts_.push_back({blend.anchor, blend.at(barycentric), models_.patch(blend.anchor)});
+  }
+  return place;
+}
+
+Eigen::Vector3f LevelAtPlace::colour(const Eigen::Vector3f& w) const {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (const Part& part : parts_) {
+    sum += part.weight * sparse::evaluate(part.model, anchors_.uv_at(part.anchor, n_, w));
   }
   return sum;
 }

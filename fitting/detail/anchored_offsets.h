@@ -5,6 +5,7 @@
 #include "core/mesh/mesh.h"
 #include "fitting/detail/anchor_layout.h"
 #include "fitting/sparse/light_field_model.h"
+#include "fitting/sparse/patch_model.h"
 
 #include <Eigen/Core>
 
@@ -38,6 +39,29 @@ struct CornerWeights {
   }
 };
 
+class AnchoredOffsets;
+
+/// What the anchors of a level say at a place, their patches unpacked.
+class LevelAtPlace {
+ public:
+  [[nodiscard]] Eigen::Vector3f colour(const Eigen::Vector3f& w) const;
+
+ private:
+  friend AnchoredOffsets;
+  struct Part {
+    std::size_t anchor;
+    float weight;
+    sparse::PatchModel model;
+  };
+
+  LevelAtPlace(const AnchoredOffsets& anchors, const Eigen::Vector3f& n)
+      : anchors_(anchors), n_(n) {}
+
+  const AnchoredOffsets& anchors_;
+  Eigen::Vector3f n_;
+  std::vector<Part> parts_;
+};
+
 /// How colours change with the direction, known at anchors and blended in between: on every level a
 /// place blends what its triangle's corners do, and the levels are added up.
 class AnchoredOffsets {
@@ -65,10 +89,9 @@ class AnchoredOffsets {
   /// Offset at a place on a triangle, unit vector `w` towards the viewer.
   [[nodiscard]] Eigen::Vector3f colour(std::size_t triangle, const Eigen::Vector3f& barycentric,
                                        const Eigen::Vector3f& w) const;
-  /// The part of it that one level says.
-  [[nodiscard]] Eigen::Vector3f colour_of_level(std::size_t level, std::size_t triangle,
-                                                const Eigen::Vector3f& barycentric,
-                                                const Eigen::Vector3f& w) const;
+  /// The part of it that one level says, for many directions at one place.
+  [[nodiscard]] LevelAtPlace level_at(std::size_t level, std::size_t triangle,
+                                      const Eigen::Vector3f& barycentric) const;
   /// Offset of a vertex towards `uv` on its disc; zero of one that no triangle uses.
   [[nodiscard]] Eigen::Vector3f colour_at(std::size_t vertex, const Eigen::Vector2f& uv) const;
 
@@ -77,10 +100,6 @@ class AnchoredOffsets {
                                       const Eigen::Vector3f& w) const;
 
  private:
-  [[nodiscard]] Eigen::Vector3f colour_of(std::size_t first, std::size_t end, std::size_t triangle,
-                                          const Eigen::Vector3f& barycentric,
-                                          const Eigen::Vector3f& w) const;
-
   core::Mesh mesh_;
   std::vector<AnchorLevel> levels_;
   AskedDirection asked_;

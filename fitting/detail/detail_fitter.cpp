@@ -5,6 +5,7 @@
 #include "core/diagnostics/error.h"
 #include "core/mesh/bounds.h"
 #include "core/mesh/neighbours.h"
+#include "fitting/detail/choose_offsets.h"
 #include "fitting/detail/detail_light_field.h"
 #include "fitting/detail/fit_anchors.h"
 #include "fitting/detail/patch_means.h"
@@ -17,11 +18,14 @@
 #include "fitting/sparse/sparse_fitter.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
+#include <cstdio>
 #include <iterator>
 #include <numeric>
 #include <span>
+#include <string>
 
 namespace sheen::fitting::detail {
 namespace {
@@ -29,6 +33,9 @@ namespace {
 constexpr std::size_t kMostTexels = std::size_t{1} << 23;
 /// Texels along the diagonal of an object of which it is not known how large it appears.
 constexpr float kTexelsAcross = 1000.0f;
+/// Triangles of which a choice between vertices and anchors is made at most: with 128 samples each
+/// it takes 1 GB.
+constexpr std::size_t kMostToChoose = std::size_t{1} << 17;
 
 float texel_m(const core::Mesh& mesh, const Options& options) {
   if (options.texel_mm) return *options.texel_mm * 1e-3f;
@@ -52,6 +59,18 @@ Eigen::Vector3f between(const std::vector<Eigen::Vector3f>& at_vertices,
          texel.at_second * at_vertices[triangle[1]] + texel.at_third * at_vertices[triangle[2]];
 }
 
+/// In one line.
+std::string description(const OffsetErrors& errors) {
+  if (!(errors.anchors > 0)) return "directions at vertices: nothing to check the choice on";
+  std::array<char, 128> line;
+  std::snprintf(line.data(), line.size(),
+                "directions at %s: on directions left out of the fit vertices err by %.4f, anchors "
+                "by %.4f (%+.2f dB)",
+                errors.anchors_win() ? "anchors" : "vertices", errors.vertex, errors.anchors,
+                errors.difference_db());
+  return line.data();
+}
+
 class DetailFitter final : public Fitter {
  public:
   DetailFitter(const core::Mesh& mesh, const Options& options, int threads)
@@ -67,7 +86,10 @@ class DetailFitter final : public Fitter {
         texture_sums_(mesh, model_.texture().atlas(), threads),
         vertex_means_(mesh, threads),
         patch_means_(mesh.positions.size()) {
-    if (options.offsets == OffsetPlaces::anchors) {
+    const bool may_move =
+        options.offsets == OffsetPlaces::anchors ||
+        (options.offsets == OffsetPlaces::automatic && mesh.triangles.size() <= kMostToChoose);
+    if (may_move) {
       triangle_samples_ = std::make_unique<TriangleSamples>(
           mesh, texel_means_.surface(), static_cast<std::size_t>(options.patches.max_samples),
           threads);
@@ -77,13 +99,19 @@ class DetailFitter final : public Fitter {
   const ModelUpdate& integrate(const core::Observation& observation) override;
   const ModelUpdate& finish() override;
   [[nodiscard]] const LightField& light_field() const override { return model_; }
-  [[nodiscard]] FitStatistics statistics() const override { return patches_->statistics(); }
+  [[nodiscard]] FitStatistics statistics() const override {
+    FitStatistics statistics = patches_->statistics();
+    statistics.choice = choice_;
+    return statistics;
+  }
 
  private:
   void store_offsets(std::span<const std::uint32_t> changed);
   void store_offset(std::uint32_t patch);
   void store_all_offsets();
   void back_to_vertices();
+  [[nodiscard]] bool choose_anchors();
+  [[nodiscard]] float anchor_spacing_m() const;
   void move_to_anchors(Planes& planes);
   [[nodiscard]] Planes starting_texture() const;
   [[nodiscard]] std::vector<float> texel_weights() const;
@@ -101,7 +129,8 @@ class DetailFitter final : public Fitter {
   TextureSums texture_sums_;
   VertexMeans vertex_means_;
   PatchMeans patch_means_;
-  std::unique_ptr<TriangleSamples> triangle_samples_;  ///< with anchors
+  std::unique_ptr<TriangleSamples> triangle_samples_;  ///< where there may be anchors
+  std::string choice_;
   core::SampleBatch samples_;
   ModelUpdate update_;
 };
@@ -160,12 +189,27 @@ void DetailFitter::store_all_offsets() {
   for (std::uint32_t patch = 0; patch < model_.patch_count(); ++patch) store_offset(patch);
 }
 
+/// Whether offsets go to anchors.
+bool DetailFitter::choose_anchors() {
+  if (options_.offsets != OffsetPlaces::automatic) return triangle_samples_ != nullptr;
+  if (!triangle_samples_) {
+    choice_ = "directions at vertices: too many triangles for the choice";
+    return false;
+  }
+  const OffsetErrors errors = check_offsets(mesh_, *patches_, *triangle_samples_,
+                                            anchor_spacing_m(), options_.patches, threads_);
+  choice_ = description(errors);
+  return errors.anchors_win();
+}
+
+float DetailFitter::anchor_spacing_m() const {
+  return static_cast<float>(options_.anchor_px) * texel_m(mesh_, options_);
+}
+
 /// Offsets at anchors in place of those at vertices, and their means out of the texture.
 void DetailFitter::move_to_anchors(Planes& planes) {
-  const FittedAnchors fitted =
-      fit_anchors(mesh_, *patches_, *triangle_samples_,
-                  static_cast<float>(options_.anchor_px) * texel_m(mesh_, options_),
-                  options_.patches, threads_);
+  const FittedAnchors fitted = fit_anchors(mesh_, *patches_, *triangle_samples_, anchor_spacing_m(),
+                                           options_.patches, threads_);
   model_.offsets() = no_offsets(model_.observed());
   model_.set_anchors(fitted.offsets);
   for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
@@ -184,7 +228,7 @@ const ModelUpdate& DetailFitter::finish() {
   Planes planes = starting_texture();
   solve_texture(texture_sums_.texels(), static_cast<std::size_t>(model_.texture().atlas().width),
                 mesh_, texel_means_.surface(), threads_, planes);
-  if (options_.offsets == OffsetPlaces::anchors) move_to_anchors(planes);
+  if (choose_anchors()) move_to_anchors(planes);
   model_.texture().set_texel_count(
       simplify_texture(model_.texture().atlas(), texel_weights(), noise(), threads_, planes));
   store_texture(planes);

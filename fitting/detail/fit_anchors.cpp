@@ -40,11 +40,12 @@ class Residuals {
     std::array<Eigen::Vector3f, kSpacings.size()> said;  ///< by the anchors of a level
   };
 
-  Residuals(const TriangleSamples& samples, int threads)
+  Residuals(const TriangleSamples& samples, FittedDirections fitted, int threads)
       : samples_(samples), threads_(threads), offsets_(1, 0) {
     const Eigen::Vector3f nothing = Eigen::Vector3f::Zero();
     for (std::size_t triangle = 0; triangle < samples.triangle_count(); ++triangle) {
       for (const TriangleSample& one : samples.of(triangle)) {
+        if (fitted == FittedDirections::without_checks && is_check_direction(one.w)) continue;
         left_.push_back({one.w, one.weight, one.rgb, {nothing, nothing}});
       }
       offsets_.push_back(left_.size());
@@ -72,9 +73,9 @@ class Residuals {
                                     offsets_[triangle + 1] - offsets_[triangle]);
     Eigen::Vector3f sum = Eigen::Vector3f::Zero();
     float weight = 0;
+    const LevelAtPlace place = anchors.level_at(level, triangle, samples_.middle(triangle));
     for (Sample& one : samples) {
-      const Eigen::Vector3f said =
-          anchors.colour_of_level(level, triangle, samples_.middle(triangle), one.w);
+      const Eigen::Vector3f said = place.colour(one.w);
       one.left += std::exchange(one.said[level], said) - said;
       sum += one.weight * one.left;
       weight += one.weight;
@@ -314,17 +315,24 @@ Eigen::Vector3f mean_over_views(const AnchoredOffsets& anchors, std::size_t vert
 
 }  // namespace
 
-FittedAnchors fit_anchors(const core::Mesh& mesh, const sparse::SparseFitter& patches,
-                          const TriangleSamples& samples, float spacing_m,
-                          const sparse::Options& options, int threads) {
-  const float tolerance = patches.statistics().tolerance.value_or(sparse::kToleranceOfUnknownNoise);
+AnchoredOffsets fit_anchored_offsets(const core::Mesh& mesh, const TriangleSamples& samples,
+                                     FittedDirections directions, float spacing_m,
+                                     const sparse::Options& options, float tolerance, int threads) {
   const Given given{mesh, samples, options, kToleranceShare * tolerance, threads};
   std::vector<AnchorLevel> levels;
   for (const float spacings : kSpacings) {
     levels.push_back({scatter_anchors(mesh, spacings * spacing_m), spacings * spacing_m});
   }
-  Residuals residuals(samples, threads);
-  const AnchoredOffsets anchors = fitted(given, levels, residuals);
+  Residuals residuals(samples, directions, threads);
+  return fitted(given, levels, residuals);
+}
+
+FittedAnchors fit_anchors(const core::Mesh& mesh, const sparse::SparseFitter& patches,
+                          const TriangleSamples& samples, float spacing_m,
+                          const sparse::Options& options, int threads) {
+  const float tolerance = patches.statistics().tolerance.value_or(sparse::kToleranceOfUnknownNoise);
+  const AnchoredOffsets anchors = fit_anchored_offsets(mesh, samples, FittedDirections::all,
+                                                       spacing_m, options, tolerance, threads);
   FittedAnchors found{without_idle(mesh, anchors),
                       std::vector<Eigen::Vector3f>(mesh.positions.size(), Eigen::Vector3f::Zero())};
   if (!found.offsets) return found;

@@ -3,6 +3,7 @@
 
 #include "core/mesh/mesh.h"
 #include "fitting/detail/anchored_offsets.h"
+#include "fitting/detail/check_directions.h"
 #include "fitting/detail/triangle_samples.h"
 #include "fitting/sparse/options.h"
 #include "fitting/sparse/sparse_fitter.h"
@@ -25,10 +26,15 @@ struct FittedAnchors {
 /// Anchors on two levels, the finer ones as far apart as `spacing_m` (> 0), fitted to what the
 /// samples of triangles differ by from their means. An anchor's samples are those of all triangles
 /// that blend it, averaged where they ask it in about the same direction; its terms are chosen as a
-/// patch's are. Sweeps over all anchors of a level, each towards what the blends of all levels
-/// leave. Of the two ways of asking them the one that leaves less after the first sweep is taken.
-/// Anchors with which no vertex differs from zero are dropped. Takes 56 bytes for every kept
-/// sample. `patches` know the views of the vertices. The same on any number of threads.
+/// patch's of this tolerance are. Sweeps over all anchors of a level, each towards what the blends
+/// of all levels leave. Of the two ways of asking them the one that leaves less after the first
+/// sweep is taken. Takes 56 bytes for every fitted sample. The same on any number of threads.
+AnchoredOffsets fit_anchored_offsets(const core::Mesh& mesh, const TriangleSamples& samples,
+                                     FittedDirections directions, float spacing_m,
+                                     const sparse::Options& options, float tolerance, int threads);
+
+/// The same to all samples, without anchors by which no vertex differs from zero. `patches` know
+/// the views of the vertices.
 FittedAnchors fit_anchors(const core::Mesh& mesh, const sparse::SparseFitter& patches,
                           const TriangleSamples& samples, float spacing_m,
                           const sparse::Options& options, int threads);

@@ -25,11 +25,15 @@ OptionTable option_table(Options& options) {
                                 "there)"));
   table.push_back(choice_option<OffsetPlaces>(
       "offsets", options.offsets,
-      {{"vertex", OffsetPlaces::vertex}, {"anchors", OffsetPlaces::anchors}},
-      "Where the model keeps how colours change with the direction: at every vertex, or at anchors "
-      "between which the surface blends: fewer bytes, better on smooth glossy shapes, slower"));
+      {{"auto", OffsetPlaces::automatic},
+       {"vertex", OffsetPlaces::vertex},
+       {"anchors", OffsetPlaces::anchors}},
+      "Where the model keeps how colours change with the direction: at every vertex; at anchors "
+      "between which the surface blends: fewer bytes, better on smooth glossy shapes, slower; "
+      "auto: "
+      "where directions left out of the fit are predicted better"));
   table.push_back(number_option("anchor-px", options.anchor_px, kLeastAnchor_px, kMostAnchor_px,
-                                "With --offsets anchors: the distance of the finer ones, texels"));
+                                "The distance of the finer anchors, texels"));
   return table;
 }
 

@@ -9,7 +9,11 @@
 namespace sheen::fitting::detail {
 
 /// Where the model keeps how colours change with the direction.
-enum class OffsetPlaces { vertex, anchors };
+enum class OffsetPlaces {
+  vertex,
+  anchors,
+  automatic  ///< where they predict better what was not fitted (choose_offsets.h)
+};
 
 /// How a texture and patches are fitted.
 struct Options {

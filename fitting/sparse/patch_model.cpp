@@ -4,6 +4,8 @@
 #include "core/geometry/disc_map.h"
 #include "fitting/iwls/wendland.h"
 
+#include <cmath>
+
 namespace sheen::fitting::sparse {
 
 Eigen::Vector3f evaluate(const PatchModel& model, const Eigen::Vector2f& uv) {
@@ -17,8 +19,10 @@ Eigen::Vector3f evaluate(const PatchModel& model, const Eigen::Vector2f& uv) {
   const std::span<const Atom> dictionary = atoms();
   for (std::size_t rbf = 0; rbf < model.rbf_count; ++rbf) {
     const Atom& atom = dictionary[model.atom[rbf]];
-    const float distance = (direction.head<2>() - atom.center).norm() / atom.support;
-    colour += iwls::wendland(distance) * model.coefficient[model.base_terms + rbf];
+    const float squared = (direction.head<2>() - atom.center).squaredNorm();
+    if (squared >= atom.support * atom.support) continue;
+    colour += iwls::wendland(std::sqrt(squared) / atom.support) *
+              model.coefficient[model.base_terms + rbf];
   }
   return colour;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace sheen::render::detail {
@@ -20,7 +21,7 @@ using Texel = std::array<float, 4>;
 constexpr std::size_t kMostTexels = std::size_t{1} << 24;
 
 /// As detail.glsl reads them.
-std::vector<Texel> blend_texels(const AnchoredOffsets& anchors) {
+std::vector<Texel> blend_texels(const AnchoredOffsets& anchors, std::size_t texels_per_anchor) {
   const core::Mesh& mesh = anchors.mesh();
   std::vector<Texel> triangles, lists;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -38,8 +39,9 @@ std::vector<Texel> blend_texels(const AnchoredOffsets& anchors) {
     }
   }
   const float side = anchors.asked() == AskedDirection::mirrored ? -1.0f : 1.0f;
-  std::vector<Texel> texels{
-      {side, static_cast<float>(mesh.triangles.size()), static_cast<float>(lists.size()), 0.0f}};
+  std::vector<Texel> texels{{side, static_cast<float>(mesh.triangles.size()),
+                             static_cast<float>(lists.size()),
+                             static_cast<float>(texels_per_anchor)}};
   texels.insert(texels.end(), triangles.begin(), triangles.end());
   texels.insert(texels.end(), lists.begin(), lists.end());
   for (std::size_t anchor = 0; anchor < anchors.models().patch_count(); ++anchor) {
@@ -57,7 +59,9 @@ AnchorUpload::AnchorUpload(const gl::Functions& gl) : gl_(gl) {
 
 std::size_t AnchorUpload::show(const std::shared_ptr<const AnchoredOffsets>& anchors) {
   if (texture_.name() != 0 && anchors == shown_) return 0;
-  const std::vector<Texel> texels = anchors ? blend_texels(*anchors) : std::vector<Texel>(1);
+  auto terms = anchors ? std::make_unique<sparse::PatchTerms>(gl_, anchors->models()) : nullptr;
+  const std::vector<Texel> texels =
+      anchors ? blend_texels(*anchors, terms->texels_per_patch()) : std::vector<Texel>(1);
   const std::size_t limit = std::min(
       kMostTexels, static_cast<std::size_t>(gl::integer_limit(gl_, GL_MAX_TEXTURE_BUFFER_SIZE)));
   if (texels.size() > limit) {
@@ -71,7 +75,7 @@ std::size_t AnchorUpload::show(const std::shared_ptr<const AnchoredOffsets>& anc
   buffer_ = gl::make_buffer(gl_, static_cast<GLsizeiptr>(bytes), texels.data());
   texture_ = gl::make_texture(gl_, GL_TEXTURE_BUFFER);
   gl_.TextureBuffer(texture_.name(), GL_RGBA32F, buffer_.name());
-  terms_ = anchors ? std::make_unique<sparse::PatchTerms>(gl_, anchors->models()) : nullptr;
+  terms_ = std::move(terms);
   shown_ = anchors;
   return bytes;
 }

@@ -2,7 +2,8 @@
 // Offsets of sparse patches, and where the model has anchors what they blend to within a triangle. In
 // front of this text stands sparse.glsl.
 // blends: a texel that says how anchors are asked (1 same, -1 mirrored, 0 there are none), how many
-// triangles and how many of the texels behind them belong to their lists. Of every triangle its
+// triangles there are, how many of the texels behind them belong to their lists and how many texels
+// of anchor_terms an anchor has. Of every triangle its
 // corners, with the first of its list in alpha and the number behind the last; the lists: an anchor,
 // and the weights with which the corners blend it; the normal of every anchor.
 layout(binding = 2) uniform samplerBuffer anchor_terms;
@@ -31,7 +32,7 @@ vec3 between_patches(int triangle_idx, vec3 place, vec3 n) {
   vec3 at = barycentric(a.xyz, b.xyz, c.xyz, place);
   int lists = 3 * int(header.y + 0.5) + 1;
   int normals = lists + int(header.z + 0.5);
-  int texels = textureSize(anchor_terms) / (textureSize(blends) - normals);
+  int texels = int(header.a + 0.5);
   vec3 w = normalize(eye_and_near.xyz - place);
   if (side < 0.0) w -= 2.0 * dot(n, w) * n;
   for (int i = lists + int(a.a + 0.5), end = lists + int(b.a + 0.5); i < end; ++i) {

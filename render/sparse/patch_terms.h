@@ -25,6 +25,7 @@ class PatchTerms {
   std::size_t upload(std::span<const std::uint32_t> patches) {
     return send(make_room(patches) ? std::span<const std::uint32_t>(all_) : patches);
   }
+  [[nodiscard]] std::size_t texels_per_patch() const { return texels_per_patch_; }
   void bind(GLuint unit) const { buffer_->bind(unit); }
 
  private:

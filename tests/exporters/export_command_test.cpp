@@ -53,20 +53,30 @@ TEST_F(Export, EveryRepresentationThatThePageDrawsBecomesOne) {
   }
 }
 
-// The page draws offsets at vertices only, and says so; formats that evaluate the model take both.
-TEST_F(Export, DirectionsAtAnchorsAreRefusedByThePage) {
+// The page blends anchors as the renderer does; only coefficients are rounded. The other formats
+// ask the model.
+TEST_F(Export, DirectionsAtAnchorsArePartOfThePage) {
   namespace detail = fitting::detail;
   const core::Mesh mesh = fitting::testing::octahedron();
   detail::DetailLightField model(mesh, core::make_atlas(mesh, 0.01f, std::size_t{1} << 20));
-  const std::vector<std::uint8_t> one(1, 1);
+  fitting::sparse::LightFieldModel said = detail::no_offsets(std::vector<std::uint8_t>(1, 1));
+  fitting::sparse::PatchModel brighter_above;
+  brighter_above.base_terms = fitting::sparse::kLinearBase;
+  brighter_above.coefficient.fill(Eigen::Vector3f::Zero());
+  brighter_above.coefficient[3].setConstant(0.3f);
+  said.store(0, brighter_above);
   model.set_anchors(std::make_shared<const detail::AnchoredOffsets>(
-      mesh, std::vector<detail::AnchorLevel>{{{0}, 0.01f}}, detail::AskedDirection::same,
-      detail::no_offsets(one)));
+      mesh, std::vector<detail::AnchorLevel>{{{0}, 10.0f}}, detail::AskedDirection::same,
+      std::move(said)));
   fitting::write_model(folder_ / "model.glb", mesh, model, seen_);
-  expect_refused({"-o", folder_ / "m.html"}, "--offsets vertex");
-  const ProgramRun run =
-      run_sheen({"export", folder_ / "model.glb", "-o", folder_ / "m.ply", "--quiet"});
-  EXPECT_EQ(run.exit_code, 0) << run.standard_error;
+  for (const char* file : {"m.html", "m.ply"}) {
+    const ProgramRun run =
+        run_sheen({"export", folder_ / "model.glb", "-o", folder_ / file, "--json", "--quiet"});
+    ASSERT_EQ(run.exit_code, 0) << run.standard_error;
+    const auto difference_db = run.json()["cost"]["difference_db"].get<double>();
+    EXPECT_EQ(difference_db > 50, std::string(file) == "m.html") << difference_db;
+  }
+  EXPECT_NE(read_file(folder_ / "m.html").find("blendWeights"), std::string::npos);
 }
 
 // What is lost is said.

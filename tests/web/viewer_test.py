@@ -28,6 +28,8 @@ except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(SKIPPED)
 
+MODELS = {"sparse": ["--representation", "sparse"], "iwls": ["--representation", "iwls"],
+          "detail": ["--offsets", "vertex"], "anchors": ["--offsets", "anchors"]}
 SIZES = {"phone": (300, 520), "desktop": (560, 400)}
 AZIMUTH, ELEVATION = -1.0, 0.5
 HALF_HEIGHT, FILL = 0.3153, 0.86  # web/viewer/camera.js
@@ -188,11 +190,11 @@ def check_without_webgl(browser, page):
 
 def check(sheen, repository, folder):
     recording = repository / "sample_data" / "glossy"
-    for name in ("sparse", "detail", "iwls"):
-        run(sheen, "replay", recording, "-o", folder / f"{name}.glb", "--representation", name, "--quiet")
+    for name, options in MODELS.items():
+        run(sheen, "replay", recording, "-o", folder / f"{name}.glb", *options, "--quiet")
         print(run(sheen, "export", folder / f"{name}.glb", "-o", folder / f"{name}.html", "--title", 'A <knot> & "more"').strip())
     with Chromium(chromium, folder / "profile") as browser:
-        for name in ("sparse", "detail", "iwls"):
+        for name in MODELS:
             check_same_picture(browser, sheen, folder, name, folder / f"{name}.glb", recording / "object.ply")
         check_controls(browser, folder / "sparse.html")
         check_told_where_nobody_looked(browser, folder / "detail.html")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The shaders: the mathematics of each representation is the renderer's own file.
 import direction from "../../render/shaders/direction.glsl";
+import detail from "../../render/detail/detail.glsl";
 import harmonics from "../../render/spherical_harmonics/harmonics.glsl";
 import iwls from "../../render/iwls/iwls.glsl";
 import mean from "../../render/mean/mean.glsl";
@@ -52,15 +53,16 @@ function compile(gl, kind, text) {
   return shader;
 }
 
-/** The program of a model; `features`: names to be defined (TEXTURED, MEANS, CONFIDENCE). */
+/** The program of a model; `features`: names to be defined (TEXTURED, BETWEEN, MEANS, CONFIDENCE). */
 export function surfaceProgram(gl, patch, patches, features) {
   const head = `#version 300 es\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\n` +
     features.map((name) => `#define ${name}\n`).join("");
   const evaluate = HEADERS[patch.shader](patch, patches) + withoutBindings(EVALUATE[patch.shader]);
   const program = gl.createProgram();
-  const vertex = compile(gl, gl.VERTEX_SHADER, head + "uniform vec4 eye_and_near;\n" + lists(patch, patches) +
-    direction + evaluate + surfaceVertex);
-  const fragment = compile(gl, gl.FRAGMENT_SHADER, head + surfaceFragment);
+  const evaluated = "uniform vec4 eye_and_near;\n" + lists(patch, patches) + direction + evaluate;
+  const between = features.includes("BETWEEN") ? evaluated + withoutBindings(detail) : "";
+  const vertex = compile(gl, gl.VERTEX_SHADER, head + evaluated + surfaceVertex);
+  const fragment = compile(gl, gl.FRAGMENT_SHADER, head + between + surfaceFragment);
   gl.attachShader(program, vertex);
   gl.attachShader(program, fragment);
   gl.linkProgram(program);

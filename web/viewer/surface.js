@@ -38,6 +38,15 @@ function withCopies(values, perVertex, copies) {
   return all;
 }
 
+/** Values of vertices, one after another for the corners of all triangles. */
+function atCorners(values, perVertex, triangles) {
+  const all = new values.constructor(triangles.length * perVertex);
+  triangles.forEach((vertex, corner) => {
+    for (let i = 0; i < perVertex; ++i) all[corner * perVertex + i] = values[vertex * perVertex + i];
+  });
+  return all;
+}
+
 function interleaved(columns) {
   const all = new columns[0].constructor(columns[0].length * columns.length);
   columns.forEach((column, c) => column.forEach((x, row) => { all[row * columns.length + c] = x; }));
@@ -52,17 +61,21 @@ export class Surface {
     this.normals = normalsOf(tables.normals);
     this.cells = tables.confidence ? textures.confidenceCells(tables.confidence) : null;
     this.measure();
-    this.makeBuffers(tables);
+    this.makeBuffers(tables, Boolean(model.anchors));
 
     // Textures, each in a unit of its own.
     // The renderer's shaders have names of their own for the first.
     const patches = { sparse: "patch_terms", mean: "patch_colours" }[model.patch.shader] || "patch_coefficients";
     this.textures = [[patches, textures.patchTexture(gl, tables.patches, model.patch)]];
     if (model.patch.atoms) this.textures.push(["atoms", textures.atomTexture(gl, model.patch.atoms)]);
+    if (model.anchors) {
+      this.textures.push(["anchor_terms", textures.patchTexture(gl, tables.anchors, model.anchors)]);
+      this.textures.push(["blends", textures.blendTexture(gl, tables, model.anchors, this.corners, this.positions, this.normals)]);
+    }
     if (tables.means) this.textures.push(["patch_means", textures.meanTexture(gl, tables.means)]);
     if (this.cells) this.textures.push(["patch_confidence", textures.confidenceTexture(gl, this.cells)]);
     if (texture) this.textures.push(["surface_texture", texture]);
-    const features = [texture && "TEXTURED", tables.means && "MEANS", this.cells && "CONFIDENCE"].filter(Boolean);
+    const features = [texture && "TEXTURED", model.anchors && "BETWEEN", tables.means && "MEANS", this.cells && "CONFIDENCE"].filter(Boolean);
     this.program = surfaceProgram(gl, model.patch, this.patches, features);
     const names = ["clip_from_object", "eye_and_near", "split_px", "show_confidence", "fading", ...this.textures.map(([name]) => name)];
     this.uniforms = Object.fromEntries(names.map((name) => [name, gl.getUniformLocation(this.program, name)]));
@@ -83,26 +96,31 @@ export class Surface {
     }
   }
 
-  makeBuffers(tables) {
+  /** `apart`: corner by corner, so that the shader knows its triangle. */
+  makeBuffers(tables, apart) {
     const { gl } = this;
     const copies = tables.copies?.column[0];
+    const triangles = interleaved(tables.triangles.column);
+    this.corners = triangles.map((vertex) => (vertex < this.patches ? vertex : copies[vertex - this.patches]));
+    this.indexCount = triangles.length;
+    this.isApart = apart;
     const own = Uint32Array.from({ length: this.patches }, (_, i) => i);
     gl.bindVertexArray(gl.createVertexArray());
-    const attribute = (location, data, define) => {
+    const attribute = (location, perVertex, values, define) => {
+      const data = apart ? atCorners(values, perVertex, triangles) : values;
       gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
       gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
       gl.enableVertexAttribArray(location);
       define(location);
     };
-    attribute(0, withCopies(this.positions, 3, copies), (l) => gl.vertexAttribPointer(l, 3, gl.FLOAT, false, 0, 0));
-    attribute(1, withCopies(this.normals, 3, copies), (l) => gl.vertexAttribPointer(l, 3, gl.FLOAT, false, 0, 0));
-    attribute(2, withCopies(own, 1, copies), (l) => gl.vertexAttribIPointer(l, 1, gl.UNSIGNED_INT, 0, 0));
+    attribute(0, 3, withCopies(this.positions, 3, copies), (l) => gl.vertexAttribPointer(l, 3, gl.FLOAT, false, 0, 0));
+    attribute(1, 3, withCopies(this.normals, 3, copies), (l) => gl.vertexAttribPointer(l, 3, gl.FLOAT, false, 0, 0));
+    attribute(2, 1, withCopies(own, 1, copies), (l) => gl.vertexAttribIPointer(l, 1, gl.UNSIGNED_INT, 0, 0));
     if (tables.places) {
-      attribute(3, interleaved(tables.places.column),
+      attribute(3, 2, interleaved(tables.places.column),
                 (l) => gl.vertexAttribPointer(l, 2, gl.UNSIGNED_SHORT, true, 0, 0));
     }
-    const triangles = interleaved(tables.triangles.column);
-    this.indexCount = triangles.length;
+    if (apart) return;
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
     gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, triangles, gl.STATIC_DRAW);
   }
@@ -125,7 +143,11 @@ export class Surface {
     gl.uniform1f(uniforms.split_px, split * gl.drawingBufferWidth);
     gl.uniform1i(uniforms.show_confidence, confidence ? 1 : 0);
     gl.uniform1i(uniforms.fading, fading ? 1 : 0);
-    gl.drawElements(gl.TRIANGLES, this.indexCount, gl.UNSIGNED_INT, 0);
+    if (this.isApart) {
+      gl.drawArrays(gl.TRIANGLES, 0, this.indexCount);
+    } else {
+      gl.drawElements(gl.TRIANGLES, this.indexCount, gl.UNSIGNED_INT, 0);
+    }
   }
 
   /** Share of the surface turned to an eye whose direction has been looked from (or nearly), [0, 1];

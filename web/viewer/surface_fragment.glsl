@@ -7,6 +7,12 @@ in vec2 place_on_texture;
 #ifdef TEXTURED
 uniform sampler2D surface_texture;
 #endif
+#ifdef BETWEEN
+flat in int triangle_idx;
+in vec3 corner_in_object;
+in vec3 corner_normal;
+#endif
+uniform bool fading;
 uniform float split_px;       // left of it mean colours are shown
 uniform bool show_confidence;
 out vec4 colour;
@@ -22,6 +28,12 @@ void main() {
   vec3 rgb = (gl_FragCoord.x < split_px ? mean_sum : sums.rgb) / sums.a;
 #ifdef TEXTURED
   rgb += texture(surface_texture, place_on_texture).rgb;
+#endif
+#ifdef BETWEEN
+  if (gl_FragCoord.x >= split_px) {
+    float share = fading ? min(2.0 * trust, 1.0) : 1.0;
+    rgb += share * between_patches(triangle_idx, corner_in_object, normalize(corner_normal));
+  }
 #endif
   rgb = clamp(rgb, 0.0, 1.0);
 #ifdef CONFIDENCE

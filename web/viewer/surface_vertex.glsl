@@ -32,6 +32,11 @@ out vec4 sums;        // colour sum and weight sum of the light field
 out vec3 mean_sum;    // colour sum of the mean colours, of the same weight
 out float trust;
 out vec2 place_on_texture;
+#ifdef BETWEEN
+flat out int triangle_idx;
+out vec3 corner_in_object;
+out vec3 corner_normal;
+#endif
 
 void main() {
   int patch_of_vertex = int(patch_idx);
@@ -48,5 +53,10 @@ void main() {
   if (fading) sums.rgb = mix(mean_sum, sums.rgb, min(2.0 * trust, 1.0));
 #endif
   place_on_texture = place;
+#ifdef BETWEEN
+  triangle_idx = gl_VertexID / 3;  // corners are drawn triangle by triangle
+  corner_in_object = position;
+  corner_normal = normal;
+#endif
   gl_Position = clip_from_object * vec4(position, 1.0);
 }

@@ -54,6 +54,44 @@ export function patchTexture(gl, table, { step, lastStep }) {
   return upload(gl, gl.RGBA16F, gl.RGBA, gl.HALF_FLOAT, texels, 4);
 }
 
+/**
+ * How triangles blend anchors, as render/detail/detail.glsl reads it. `corners`: the vertices of all triangles;
+ * `positions`, `normals`: of the vertices.
+ */
+export function blendTexture(gl, { anchors, anchorVertices, blended, blendWeights }, { texels, mirrored }, corners, positions, normals) {
+  const lists = [];
+  const ofTriangles = [];
+  const says = (anchor) => (anchors.column[3][anchor] & 63) !== 0;  // more than the constant, which is zero
+  for (let first = 0; first < corners.length; first += 3) {
+    // Gather what the corners blend.
+    const weights = new Map();
+    for (let corner = 0; corner < 3; ++corner) {
+      blended.column.forEach((column, i) => {
+        const vertex = corners[first + corner];
+        const weight = blendWeights.column[i][vertex] / 65535;
+        if (weight === 0 || !says(column[vertex])) return;
+        if (!weights.has(column[vertex])) weights.set(column[vertex], [0, 0, 0]);
+        weights.get(column[vertex])[corner] = weight;
+      });
+    }
+    // Say where the list begins and ends.
+    const numbers = [lists.length / 4, lists.length / 4 + weights.size, 0];
+    weights.forEach((ofCorners, anchor) => lists.push(anchor, ...ofCorners));
+    for (let corner = 0; corner < 3; ++corner) {
+      const p = 3 * corners[first + corner];
+      ofTriangles.push(positions[p], positions[p + 1], positions[p + 2], numbers[corner]);
+    }
+  }
+  const ofAnchors = Array.from(anchorVertices.column[0]).flatMap((vertex) => [...normals.subarray(3 * vertex, 3 * vertex + 3), 0]);
+  const header = [mirrored ? -1 : 1, corners.length / 3, lists.length / 4, texels];
+  const all = new Float32Array(4 + ofTriangles.length + lists.length + ofAnchors.length);
+  all.set(header);
+  all.set(ofTriangles, 4);
+  all.set(lists, 4 + ofTriangles.length);
+  all.set(ofAnchors, 4 + ofTriangles.length + lists.length);
+  return upload(gl, gl.RGBA32F, gl.RGBA, gl.FLOAT, all, 4);
+}
+
 /** The dictionary of sparse patches: centre u, v; 1 / support. */
 export function atomTexture(gl, atoms) {
   const texels = new Float32Array(atoms.flatMap(([u, v, support]) => [u, v, 1 / support, 0]));
