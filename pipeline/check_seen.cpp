@@ -87,9 +87,11 @@ void refuse_other_stamps(const capture::Session& session, const FrameStatistics&
   const auto& subject = cause.suspect == capture::PoseSuspect::board    ? *session.board
                         : cause.suspect == capture::PoseSuspect::camera ? camera
                                                                         : session.folder;
-  // What is known of the recording itself, such as interlaced images, may be the cause.
+  // What is known of the recording itself, such as interlaced images or the shape of its pixels,
+  // may be the cause.
   const auto notes = source->report().notes;
-  const std::string doubt = cause.is_sure || notes.empty() ? "" : notes.front() + "; ";
+  const bool is_settled = cause.is_sure && cause.suspect != capture::PoseSuspect::camera;
+  const std::string doubt = is_settled || notes.empty() ? "" : notes.front() + "; ";
   throw core::bad_input(subject,
                         fmt::format("{}; none of {} frames got a pose ({})", cause.fault,
                                     frames.frames_read, reasons_text(frames)),

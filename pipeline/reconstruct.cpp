@@ -2,6 +2,7 @@
 #include "pipeline/reconstruct.h"
 
 #include "core/diagnostics/cpu_clock.h"
+#include "core/diagnostics/error.h"
 #include "core/mesh/bounds.h"
 #include "core/visibility/raster_visibility.h"
 #include "fitting/descriptor.h"
@@ -298,6 +299,9 @@ void Reconstruction::run(ProgressSink& sink, FrameListener* listener) {
   // A share of the patches may lie underneath.
   const bool seen = impl_->fitter->statistics().samples > 0 || !impl_->options.share.is_whole();
   check_something_was_seen(impl_->session, impl_->options.frames, frames, seen, impl_->scene);
+  if (const auto fault = impl_->evidence->board_fault()) {
+    throw core::bad_input(*impl_->session.board, fault->fault, fault->remedy);
+  }
   for (const std::string& doubt : doubts_of_stamps(impl_->session, impl_->options.frames, frames)) {
     sink.note(doubt);
   }

@@ -3,6 +3,7 @@
 
 #include "capture/pose/board_tags.h"
 #include "capture/source/image_folder_source.h"
+#include "capture/source/video_source.h"
 #include "core/diagnostics/error.h"
 #include "pipeline/thinned.h"
 
@@ -62,7 +63,9 @@ void require_tags(const capture::Session& session, const SeenTags& seen) {
 
 capture::LensPrior prior_of(const capture::Session& session) {
   const capture::ImageSize size{session.camera.width_px(), session.camera.height_px()};
-  if (!session.image_pattern) return capture::guessed_lens(size);
+  if (session.video) {
+    return capture::guessed_lens(size, capture::video_pixel_aspect(*session.video));
+  }
   const auto name = capture::NumberedName::parse(*session.image_pattern);
   for (const int number : {0, 1}) {
     const auto picture = session.folder / name->at(number);

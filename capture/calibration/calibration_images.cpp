@@ -30,10 +30,13 @@ bool is_hidden(const fs::path& path) {
 /// Whatever images a folder holds, by name; the size of the first binds the others.
 class ImageFolder : public FrameSource {
  public:
-  explicit ImageFolder(const fs::path& folder) : files_(pictures_in(folder)) {}
+  explicit ImageFolder(const fs::path& folder) : folder_(folder), files_(pictures_in(folder)) {}
 
   std::optional<Frame> next() override {
-    if (next_ == files_.size()) return std::nullopt;
+    if (next_ == files_.size()) {
+      reader_.check_all(folder_);
+      return std::nullopt;
+    }
     Frame frame;
     frame.image = reader_.read(files_[next_], std::nullopt);
     frame.index = static_cast<int>(next_++);
@@ -48,6 +51,7 @@ class ImageFolder : public FrameSource {
   [[nodiscard]] SourceReport report() const override { return {0, reader_.notes()}; }
 
  private:
+  fs::path folder_;
   std::vector<fs::path> files_;
   std::size_t next_ = 0;
   StillReader reader_;

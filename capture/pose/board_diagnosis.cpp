@@ -2,6 +2,7 @@
 #include "capture/pose/board_diagnosis.h"
 
 #include "capture/pose/board_tags.h"
+#include "capture/pose/tag_places.h"
 #include "core/numerics/median.h"
 
 #include <fmt/format.h>
@@ -89,12 +90,14 @@ struct BoardDiagnosis::Impl {
   bool is_flat = false;
   int images = 0, images_with_tags = 0;
   int images_mirrored = 0, images_inverted = 0, images_repeated = 0;
+  std::vector<std::vector<TagDetection>> views;  ///< all tags of the family, each once
   std::set<int> strangers;            ///< ids of the board's family that it does not hold
   std::map<std::string, int> others;  ///< images that show tags of another print
   std::vector<double> sizes;          ///< seen size over stated size, from the tags' distances
   std::vector<double> turns_deg;      ///< of tags as seen against as stated
   std::vector<double> mirrored;       ///< 1 where a tag is seen from behind the board's plane
   std::vector<double> layout_px;      ///< rms of a homography over all corners, in the raw image
+  std::vector<double> apart;          ///< centres off any plane, tag sides: more than lenses bend
   std::vector<double> straight_px;    ///< the same with the lens' distortion taken out
 };
 
@@ -153,8 +156,9 @@ void BoardDiagnosis::Impl::compare(const std::vector<TagDetection>& tags) {
   straight_px.push_back(homography_rms(corners_plane, corners_straight, H));
   if (tags.size() < 5) return;
 
-  // From the centres alone: how large, how turned do the tags look?
-  homography_rms(centres_plane, centres_image, H);
+  // From the centres alone: do they lie so at all, and how large, how turned do the tags look?
+  const double off_px = homography_rms(centres_plane, centres_image, H);
+  apart.push_back(off_px / cv::norm(corners_image[1] - corners_image[0]));
   if (H.empty()) return;
   Points mapped;
   cv::perspectiveTransform(corners_image, mapped, H.inv());
@@ -181,6 +185,7 @@ void BoardDiagnosis::look_at(const Frame& frame) {
   for (const TagDetection& tag : all) {
     if (!impl_->board.tags.contains(tag.id)) impl_->strangers.insert(tag.id);
   }
+  impl_->views.push_back(drop_ambiguous(all));
   const std::vector<TagDetection> known = impl_->finder.find();
   std::set<int> ids;
   for (const TagDetection& tag : all) ids.insert(tag.id);
@@ -243,6 +248,15 @@ PoseCause BoardDiagnosis::cause(PoseRejection refusal) const {
   }
 
   // Tags are there but do not fit. Which file is it?
+  if (const auto fault = shifted_ids(seen.board, seen.camera, seen.views)) {
+    return {PoseSuspect::board, fault->fault, fault->remedy};
+  }
+  auto apart = seen.apart;
+  if (!apart.empty() && core::upper_median(apart) > 1) {
+    return {PoseSuspect::board,
+            "its tags lie in another order than on the print: their places do not fit each other",
+            "give the board.yaml of this print, or correct its ids"};
+  }
   auto sizes = seen.sizes, turns = seen.turns_deg, mirrored = seen.mirrored;
   auto layout = seen.layout_px, straight = seen.straight_px;
   if (!mirrored.empty() && core::upper_median(mirrored) > 0.5) {

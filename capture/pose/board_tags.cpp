@@ -18,6 +18,13 @@ TagFamily family_of(const Board& board) {
 
 }  // namespace
 
+cv::Mat grey_of(const Frame& frame) {
+  if (!frame.grey.empty()) return frame.grey;
+  cv::Mat grey;
+  cv::cvtColor(frame.image, grey, cv::COLOR_BGR2GRAY);
+  return grey;
+}
+
 BoardTagFinder::BoardTagFinder(const Board& board, const core::CameraModel& camera)
     : board_(board), camera_(camera), family_(family_of(board)), detector_(family_) {}
 

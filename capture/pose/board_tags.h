@@ -12,6 +12,9 @@
 
 namespace sheen::capture {
 
+/// The frame as CV_8UC1: its own plane, shared, or a converted one.
+cv::Mat grey_of(const Frame& frame);
+
 /// Finds the tags of one board with refined corners. Keeps its buffers; one thread at a time.
 class BoardTagFinder {
  public:

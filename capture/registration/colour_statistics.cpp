@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numeric>
 
 namespace sheen::capture {
 namespace {
 
-constexpr std::size_t kBins = std::size_t{1} << 12;
-constexpr float kUnseen = 0.02F / kBins;  // probability that keeps unseen colours undecided
+constexpr float kUnseen = 0.02F / 4096;  // probability that keeps unseen colours undecided
 
 void normalise(std::vector<float>& counts) {
   const float sum = std::accumulate(counts.begin(), counts.end(), 0.0F);
@@ -22,10 +22,25 @@ void normalise(std::vector<float>& counts) {
 ColourStatistics::ColourStatistics() : object_(kBins), surroundings_(kBins), evidence_(kBins) {}
 
 void ColourStatistics::add(const cv::Vec3b& bgr, bool on_object) {
-  (on_object ? object_ : surroundings_)[bin(bgr)] += 1;
+  const std::size_t bin = fine_bin(bgr);
+  is_grey_ &= bin >= kColours;
+  (on_object ? object_ : surroundings_)[bin] += 1;
+}
+
+/// Shades of grey among colours are colours like any other.
+void ColourStatistics::fold_greys(std::vector<float>& counts) {
+  for (std::size_t shade = kColours; shade < kBins; ++shade) {
+    const auto level = static_cast<std::uint8_t>((shade - kColours) << (8 - kGreyBits));
+    counts[bin({level, level, level})] += counts[shade];
+    counts[shade] = 0;
+  }
 }
 
 void ColourStatistics::finish() {
+  if (!is_grey_) {
+    fold_greys(object_);
+    fold_greys(surroundings_);
+  }
   normalise(object_);
   normalise(surroundings_);
   for (std::size_t i = 0; i < kBins; ++i) {

@@ -310,7 +310,12 @@ void require_folder(const std::filesystem::path& folder) {
 
 std::unique_ptr<FrameSource> open_images(const Session& session, const FrameRange& range) {
   const ImageSize size{session.camera.width_px(), session.camera.height_px()};
-  if (session.video) return open_video(*session.video, size, range, session.fps);
+  if (session.video) {
+    const Eigen::Vector2d& focal_px = session.camera.intrinsics().focal_px;
+    return open_video(
+        *session.video, size, range, session.fps,
+        session.camera_file ? std::optional(focal_px.y() / focal_px.x()) : std::nullopt);
+  }
   return open_image_folder(session.folder, session.image_pattern.value_or(""), size, range,
                            session.fps);
 }

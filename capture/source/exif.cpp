@@ -146,6 +146,12 @@ std::string tiff_colour_fault(std::span<const std::uint8_t> tiff) {
   return {};
 }
 
+int tiff_bits(std::span<const std::uint8_t> tiff) {
+  const TiffBytes bytes(tiff);
+  if (!bytes.is_tiff()) return 8;
+  return static_cast<int>(bytes.first_of(bytes.first_directory(), kBits).value_or(8));
+}
+
 std::span<const std::uint8_t> tiff_profile(std::span<const std::uint8_t> tiff) {
   const TiffBytes bytes(tiff);
   if (!bytes.is_tiff()) return {};

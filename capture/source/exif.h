@@ -29,6 +29,9 @@ std::optional<ImageSize> tiff_size(std::span<const std::uint8_t> tiff);
 /// print"); empty for grey, palettes, RGB and YCbCr in whole numbers of at most 16 bits.
 std::string tiff_colour_fault(std::span<const std::uint8_t> tiff);
 
+/// Bits a channel of the first picture of a TIFF file.
+int tiff_bits(std::span<const std::uint8_t> tiff);
+
 /// Bytes of the ICC profile of a TIFF file; empty where there is none.
 std::span<const std::uint8_t> tiff_profile(std::span<const std::uint8_t> tiff);
 

@@ -177,6 +177,7 @@ void read_png(Bytes bytes, ImageFacts& facts) {
     if (starts_with(bytes, "IDAT", at + 4)) break;
     if (starts_with(bytes, "IHDR", at + 4) && length >= 8) {
       facts.size = ImageSize{side(big_endian(chunk, 0, 4)), side(big_endian(chunk, 4, 4))};
+      if (length > 8) facts.bits = chunk[8];
     }
     if (starts_with(bytes, "eXIf", at + 4)) take_exif(chunk, facts);
     if (starts_with(bytes, "iCCP", at + 4)) facts.profile = inflated_profile(chunk);
@@ -256,6 +257,7 @@ ImageFacts read_image_facts(Bytes bytes) {
       take_exif(bytes, facts);
       facts.size = tiff_size(bytes);
       facts.colour_fault = tiff_colour_fault(bytes);
+      facts.bits = tiff_bits(bytes);
       const auto profile = tiff_profile(bytes);
       facts.profile.assign(profile.begin(), profile.end());
       break;

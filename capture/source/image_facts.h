@@ -33,6 +33,7 @@ struct ImageFacts {
   ImageKind kind = ImageKind::unknown;
   std::optional<ImageSize> size;      ///< stored pixels, where the headers say
   int channels = 0;                   ///< of JPEG: 1, 3 or 4; else 0
+  int bits = 8;                       ///< a channel, of PNG and TIFF
   Orientation orientation;            ///< EXIF
   std::vector<std::uint8_t> profile;  ///< ICC profile; empty where there is none
   bool is_adobe_rgb = false;          ///< EXIF says so, as cameras do without a profile

@@ -99,7 +99,10 @@ class ImageFolderSource : public FrameSource {
 
  private:
   std::optional<Frame> read() {
-    if (next_ >= end_) return std::nullopt;
+    if (next_ >= end_) {
+      reader_.check_all(session_folder_ / name_.folder());
+      return std::nullopt;
+    }
     cv::Mat image = reader_.read(session_folder_ / name_.at(first_ + next_), size_);
     const int index = next_++;
     Frame frame{std::move(image), index / fps_, index};

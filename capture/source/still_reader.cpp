@@ -50,7 +50,8 @@ cv::Mat decoded(const std::filesystem::path& path, const std::vector<std::uint8_
     return image;
   }
   try {
-    image = cv::imdecode(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION);
+    const int depth = facts.bits == 16 ? cv::IMREAD_ANYDEPTH : 0;
+    image = cv::imdecode(bytes, cv::IMREAD_COLOR | cv::IMREAD_IGNORE_ORIENTATION | depth);
   } catch (const cv::Exception&) {
     image.release();  // OpenCV throws for absurd sizes and returns nothing for other faults
   }
@@ -77,6 +78,7 @@ cv::Mat StillReader::read(const std::filesystem::path& path, std::optional<Image
   };
   if (facts.size) static_cast<void>(choose(*facts.size));
   cv::Mat image = decoded(path, bytes, facts);
+  if (image.depth() == CV_16U) take_depth(path, image);
   const TurnChoice turn = choose({image.cols, image.rows});
   if (!bound_) bound_ = ImageSize{image.cols, image.rows};
   if (turn.turns) image = turned(image, facts.orientation);
@@ -118,6 +120,13 @@ void StillReader::convert_colours(const std::filesystem::path& path, const Image
   note(path, "its colours were converted to sRGB from the profile " + profile->name());
 }
 
+/// 8 bits of 16, rounded.
+void StillReader::take_depth(const std::filesystem::path& path, cv::Mat& image) {
+  if (first_deep_.empty()) first_deep_ = path;
+  depth_.look_at(image);
+  image.convertTo(image, CV_8U, 1 / 257.0);
+}
+
 void StillReader::note(const std::filesystem::path& path, const std::string& cause) {
   Cause& known = causes_[cause];
   if (known.count++ == 0) known.first = path.string();
@@ -129,6 +138,9 @@ std::vector<std::string> StillReader::notes() const {
     notes.push_back(known.count == 1
                         ? fmt::format("{}: {}", known.first, cause)
                         : fmt::format("{} and {} more: {}", known.first, known.count - 1, cause));
+  }
+  if (const std::string doubt = depth_.doubt(); !doubt.empty()) {
+    notes.push_back(first_deep_.string() + ": " + doubt);
   }
   return notes;
 }

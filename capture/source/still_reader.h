@@ -4,6 +4,7 @@
 #include "capture/source/colour_profile.h"
 #include "capture/source/frame_range.h"
 #include "capture/source/image_facts.h"
+#include "capture/source/number_depth.h"
 
 #include <opencv2/core/mat.hpp>
 
@@ -27,17 +28,24 @@ class StillReader {
   /// What was converted or is doubtful so far; each cause once, with the first file and how many.
   [[nodiscard]] std::vector<std::string> notes() const;
 
+  /// After the last picture: throws core::Error (bad_input) where all of them together show that
+  /// they are not what their headers say. `subject` is their folder.
+  void check_all(const std::filesystem::path& subject) const { depth_.check(subject); }
+
  private:
   struct Cause {
     std::string first;  ///< path
     int count = 0;
   };
   void note(const std::filesystem::path& path, const std::string& cause);
+  void take_depth(const std::filesystem::path& path, cv::Mat& image);
   void convert_colours(const std::filesystem::path& path, const ImageFacts& facts, cv::Mat& bgr);
 
   std::optional<ImageSize> bound_;                                ///< stored size of the first
   std::map<std::string, std::optional<ColourProfile>> profiles_;  ///< by their bytes
   std::optional<ColourProfile> adobe_rgb_;
+  NumberDepth depth_;
+  std::filesystem::path first_deep_;  ///< of 16 bits
   std::map<std::string, Cause> causes_;
 };
 

@@ -175,6 +175,13 @@ Orientation orientation_of(const AVStream& stream) {
   return orientation;
 }
 
+double pixel_aspect_of(AVFormatContext& input, AVStream& stream) {
+  constexpr double widest = 4;
+  const AVRational stated = av_guess_sample_aspect_ratio(&input, &stream, nullptr);
+  const double aspect = stated.num > 0 && stated.den > 0 ? av_q2d(stated) : 1;
+  return aspect > 1 / widest && aspect < widest ? aspect : 1;
+}
+
 /// Pictures that a player shows, as far as the container knows without decoding.
 std::optional<int> shown_pictures(const AVFormatContext& input, AVStream& stream,
                                   std::optional<double> fps) {
@@ -265,6 +272,7 @@ VideoDecoder::Impl::Impl(const std::filesystem::path& video, VideoBytes* bytes,
   if (!facts.fps) facts.fps = usable_rate(stream.r_frame_rate, stream.time_base);
   facts.frames = shown_pictures(*input, stream, facts.fps);
   facts.orientation = orientation_of(stream);
+  facts.pixel_aspect = pixel_aspect_of(*input, stream);
   // AVI states a rate and counts; the other containers stamp every picture.
   facts.has_own_times = std::strcmp(input->iformat->name, "avi") != 0;
   const AVFieldOrder order = stream.codecpar->field_order;

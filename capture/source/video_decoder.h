@@ -19,6 +19,7 @@ struct VideoFacts {
   std::optional<double> fps;  ///< usual frame rate
   std::optional<int> frames;  ///< that a player shows: those hidden by an edit list do not count
   Orientation orientation;
+  double pixel_aspect = 1;     ///< width of a pixel over its height
   bool has_own_times = false;  ///< frames carry times of their own, not only a rate
 };
 

@@ -3,6 +3,7 @@
 
 #include "capture/source/image_check.h"
 #include "capture/source/motion_jpeg_source.h"
+#include "capture/source/pixel_aspect.h"
 #include "capture/source/quarter_turn.h"
 #include "capture/source/read_ahead_source.h"
 #include "capture/source/recording_end.h"
@@ -29,14 +30,15 @@ constexpr int kMaxSidePx = 1 << 15;
 class VideoSource : public FrameSource {
  public:
   VideoSource(const std::filesystem::path& path, VideoDecoder decoder, const ImageSize& size,
-              const FrameRange& range, std::optional<double> fps)
+              const FrameRange& range, std::optional<double> fps, std::optional<double> focal_ratio)
       : path_(path),
         size_(size),
         range_(range),
         decoder_(std::move(decoder)),
         file_fps_(decoder_.facts().fps.value_or(fps.value_or(kFallbackFps))),
         promised_(decoder_.facts().frames),
-        rate_(fps) {
+        rate_(fps),
+        focal_ratio_(focal_ratio) {
     check_range(path_, range_, promised_);
     const ImageSize stated = decoder_.facts().size;
     if (stated.width_px > 0) choose_orientation(stated);
@@ -55,8 +57,13 @@ class VideoSource : public FrameSource {
   }
 
   [[nodiscard]] SourceReport report() const override {
-    SourceReport report{decoder_.damaged(), colour_.notes()};
+    // What may make poses wrong comes first.
+    SourceReport report{decoder_.damaged(), {}};
+    const std::string aspect =
+        focal_ratio_ ? aspect_doubt(decoder_.facts().pixel_aspect, *focal_ratio_) : "";
+    if (!aspect.empty()) report.notes.push_back(aspect);
     if (!turn_.note.empty()) report.notes.push_back(turn_.note);
+    for (const std::string& note : colour_.notes()) report.notes.push_back(note);
     if (auto disagreement = rate_.disagreement()) report.notes.push_back(*disagreement);
     for (std::string& note : report.notes) note = path_.string() + ": " + note;
     return report;
@@ -64,6 +71,7 @@ class VideoSource : public FrameSource {
 
  private:
   void choose_orientation(const ImageSize& stored) {
+    refuse_shown_size(path_, stored, size_, decoder_.facts().pixel_aspect);
     turn_ = choose_turn(path_, stored, size_, decoder_.facts().orientation);
     stored_ = stored;
   }
@@ -111,6 +119,7 @@ class VideoSource : public FrameSource {
   double file_fps_ = kFallbackFps;
   std::optional<int> promised_;  // frames the container states
   StatedRate rate_;
+  std::optional<double> focal_ratio_;  // fy / fx of the camera
   VideoColour colour_;
   ImageSize stored_;
   TurnChoice turn_;
@@ -139,18 +148,24 @@ ImageSize stored_video_size(const std::filesystem::path& path) {
   return size;
 }
 
+double video_pixel_aspect(const std::filesystem::path& path) {
+  check_is_file(path);
+  return VideoDecoder(path).facts().pixel_aspect;
+}
+
 std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, const ImageSize& size,
-                                        const FrameRange& range, std::optional<double> fps) {
+                                        const FrameRange& range, std::optional<double> fps,
+                                        std::optional<double> focal_ratio) {
   check_is_file(path);
   if (auto source = open_motion_jpeg(path, size, range, fps)) return source;
   return read_ahead(
-      std::make_unique<VideoSource>(path, VideoDecoder(path, size), size, range, fps));
+      std::make_unique<VideoSource>(path, VideoDecoder(path, size), size, range, fps, focal_ratio));
 }
 
 std::unique_ptr<FrameSource> open_growing_video(const std::filesystem::path& name,
                                                 VideoBytes& bytes, const ImageSize& size) {
   return std::make_unique<VideoSource>(name, VideoDecoder(name, bytes), size, FrameRange{},
-                                       std::nullopt);
+                                       std::nullopt, std::nullopt);
 }
 
 }  // namespace sheen::capture

@@ -20,9 +20,11 @@ namespace sheen::capture {
 /// returns), and from `next()` when decoding stops early: more than one frame short of the number
 /// the container states and more than two frame times short of its length (containers over-state by
 /// a frame, and state frames of even spacing where the recording has gaps, so being short by one of
-/// the two only is no fault).
+/// the two only is no fault). `focal_ratio` is fy / fx of the camera, where it is known: pixels
+/// that are stated to be of another aspect are noted.
 std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, const ImageSize& size,
-                                        const FrameRange& range, std::optional<double> fps);
+                                        const FrameRange& range, std::optional<double> fps,
+                                        std::optional<double> focal_ratio = std::nullopt);
 
 /// The same of a video that is still being recorded, called `name` in messages: frames come as
 /// `bytes` grows, some behind, and are those that open_video gives of the finished file. Waits for
@@ -32,5 +34,8 @@ std::unique_ptr<FrameSource> open_growing_video(const std::filesystem::path& nam
 
 /// Size of a video's stored pixels. Throws core::Error (bad_input).
 ImageSize stored_video_size(const std::filesystem::path& path);
+
+/// Width of its pixels over their height, as it states. Throws core::Error (bad_input).
+double video_pixel_aspect(const std::filesystem::path& path);
 
 }  // namespace sheen::capture

@@ -19,15 +19,15 @@ constexpr std::size_t kExifWithin = 256U
 
 }  // namespace
 
-LensPrior guessed_lens(const ImageSize& size) {
-  const double half_side_px = 0.5 * std::max(size.width_px, size.height_px);
-  return {size, half_side_px / std::tan(std::numbers::pi / 6), kGuessedSigma, false};
+LensPrior guessed_lens(const ImageSize& size, double pixel_aspect) {
+  const double half_side_px = 0.5 * std::max(1.0 * size.width_px, size.height_px / pixel_aspect);
+  return {size, half_side_px / std::tan(std::numbers::pi / 6), kGuessedSigma, false, pixel_aspect};
 }
 
 LensPrior stated_lens(const ImageSize& size, double focal_35mm) {
   const double film_diagonal_mm = std::hypot(36.0, 24.0);
   const double diagonal_px = std::hypot(size.width_px, size.height_px);
-  return {size, focal_35mm / film_diagonal_mm * diagonal_px, kStatedSigma, true};
+  return {size, focal_35mm / film_diagonal_mm * diagonal_px, kStatedSigma, true, 1};
 }
 
 LensPrior lens_of_picture(const std::filesystem::path& picture, const ImageSize& size) {

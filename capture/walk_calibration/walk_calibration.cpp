@@ -74,7 +74,7 @@ Belief belief_of(const LensPrior& prior) {
   const double longer_px = std::max(prior.size.width_px, prior.size.height_px);
   return {
       {std::log(prior.focal_px), 0, 0, 0.5 * (prior.size.width_px - 1),
-       0.5 * (prior.size.height_px - 1), 0, 1, 0, 0},
+       0.5 * (prior.size.height_px - 1), 0, prior.pixel_aspect, 0, 0},
       {prior.focal_sigma, 0.3, 0.3, 0.03 * longer_px, 0.03 * longer_px, 0.5, 0.01, 0.005, 0.005}};
 }
 

@@ -35,10 +35,10 @@ struct WalkCalibration {
 /// Focal length, principal point and distortion from a board's tags in at least kFewestWalkViews
 /// images, by bundle adjustment over lens and poses (Huber loss). The focal length is always
 /// estimated. Edges, k1, principal point, k2, aspect and decentring are tried in this order, and
-/// stay at their priors (zero, the image's centre) unless they differ from them by three standard
-/// deviations. Deviations are the larger of those from the residuals and of those from how views
-/// disagree, corners of one image being wrong together. Nothing when too few views show two tags
-/// or no lens fits.
+/// stay at their priors (zero, the image's centre, the pixels' aspect as stated) unless they differ
+/// from them by three standard deviations. Deviations are the larger of those from the residuals
+/// and of those from how views disagree, corners of one image being wrong together. Nothing when
+/// too few views show two tags or no lens fits.
 std::optional<WalkCalibration> calibrate_from_walk(
     const Board& board, const LensPrior& prior,
     const std::vector<std::vector<TagDetection>>& views);

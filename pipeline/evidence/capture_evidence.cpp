@@ -35,7 +35,10 @@ CaptureEvidence::CaptureEvidence(const capture::Session& session, const core::Me
       light_(patch_count),
       depth_(session.depth ? session.depth->unit_m : 1),
       grains_(kMostGrains, kGrainSpacing) {
-  if (board) corners_.emplace(*board, session.camera);
+  if (board) {
+    corners_.emplace(*board, session.camera);
+    tags_.emplace(*board, session.camera);
+  }
 }
 
 void CaptureEvidence::look_at(const capture::Frame& frame,
@@ -45,6 +48,7 @@ void CaptureEvidence::look_at(const capture::Frame& frame,
     corners_->look_at(frame, camera_from_board,
                       last_index_ + 1 == frame.index ? last_pose_ : std::nullopt);
   }
+  if (tags_) tags_->look_at(frame);
   outline_.look_at(frame.index, frame.image, observation.camera, observation.camera_from_object);
   depth_.look_at(observation);
   light_.look_at(frame.index, observation.samples, observation.view);
@@ -84,8 +88,22 @@ double CaptureEvidence::grain() const {
   return grains.empty() ? 0 : core::upper_median(grains);
 }
 
+/// Where the object is not where poses and mesh put it, nowhere in the images, or corners do not
+/// fit.
+bool CaptureEvidence::has_doubtful_poses() const {
+  return !corners_->findings().empty() || !outline_.misplacement() || !outline_.findings().empty();
+}
+
+std::optional<capture::IdFault> CaptureEvidence::board_fault() const {
+  return tags_ && has_doubtful_poses() ? tags_->fault() : std::nullopt;
+}
+
 std::vector<Finding> CaptureEvidence::faults() const {
   std::vector<Finding> faults;
+  if (tags_ && has_doubtful_poses()) {
+    append(tags_->findings(!outline_.findings().empty()), faults);
+    if (!faults.empty() && faults.front().cause == "tag-ids") return faults;
+  }
   const double noise = grain();
   if (noise > kGrainy) {
     faults.push_back({"noise", fmt::format("the images are grainy: noise of {:.0f} of 255 levels; "

@@ -9,6 +9,7 @@
 #include "pipeline/evidence/finding.h"
 #include "pipeline/evidence/light_evidence.h"
 #include "pipeline/evidence/outline_evidence.h"
+#include "pipeline/evidence/tag_evidence.h"
 #include "pipeline/thinned.h"
 
 #include <Eigen/Geometry>
@@ -39,16 +40,21 @@ class CaptureEvidence {
   /// Everything, after the last frame.
   [[nodiscard]] std::vector<Finding> findings() const;
 
+  /// Poses from tags are wrong throughout, for which nothing helps but another board.yaml.
+  [[nodiscard]] std::optional<capture::IdFault> board_fault() const;
+
   [[nodiscard]] int frames() const { return static_cast<int>(azimuths_rad_.size()); }
 
  private:
   void measure_grain(const cv::Mat& image);
   [[nodiscard]] double grain() const;
   [[nodiscard]] std::optional<Finding> coverage() const;
+  [[nodiscard]] bool has_doubtful_poses() const;
 
   Eigen::Isometry3d board_from_object_;
   Eigen::Vector3d middle_;  ///< of the object, in its frame
   std::optional<CornerEvidence> corners_;
+  std::optional<TagEvidence> tags_;
   OutlineEvidence outline_;
   LightEvidence light_;
   DepthEvidence depth_;

@@ -7,7 +7,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <fmt/format.h>
-#include <opencv2/imgproc.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -25,13 +24,6 @@ constexpr double kPatternShare = 0.35;
 
 constexpr double kStep = 1e-4;  // of a numerical derivative
 constexpr int kCameraUnknowns = 5;
-
-cv::Mat grey_of(const capture::Frame& frame) {
-  if (!frame.grey.empty()) return frame.grey;
-  cv::Mat grey;
-  cv::cvtColor(frame.image, grey, cv::COLOR_BGR2GRAY);
-  return grey;
-}
 
 core::CameraModel with_change(const core::CameraModel& camera, int unknown) {
   auto changed = camera.intrinsics();
@@ -66,7 +58,7 @@ void CornerEvidence::look_at(const capture::Frame& frame,
                              const std::optional<Eigen::Isometry3d>& last) {
   if (!views_.is_due()) return;
   View view;
-  const auto pose = tracker_.track(grey_of(frame), camera_from_board);
+  const auto pose = tracker_.track(capture::grey_of(frame), camera_from_board);
   const auto& corners = tracker_.corners();
   if (!pose || corners.size() < kFewestCorners) {
     views_.add(view);

@@ -74,6 +74,7 @@ class OutlineEvidence {
  private:
   capture::ContourFinder contours_;
   double radius_m_ = 0;
+  bool is_grey_ = true;  ///< no view has shown a colour
   Thinned<View> views_;
 };
 

@@ -103,6 +103,23 @@ TEST_F(Input, NoCommandWritesFromABoardInAnotherUnit) {
   EXPECT_FALSE(fs::exists(model_));
 }
 
+// Most tags of the board fit a pose one tag off: the model came out wrong, with a note on its
+// place.
+TEST_F(Input, ABoardWhoseIdsAreShiftedIsRefusedWithTheNumber) {
+  const std::string text = read_file(session_ / "board.yaml");
+  const std::regex id(R"(id: ([0-9]+))");
+  std::string shifted;
+  auto rest = text.cbegin();
+  for (std::sregex_iterator match(text.begin(), text.end(), id), end; match != end; ++match) {
+    shifted +=
+        std::string(rest, (*match)[0].first) + "id: " + std::to_string(std::stoi((*match)[1]) + 1);
+    rest = (*match)[0].second;
+  }
+  write_file(session_ / "board.yaml", shifted + std::string(rest, text.cend()));
+  expect_refused(replay(), "board.yaml", "1 too high");
+  EXPECT_FALSE(fs::exists(model_));
+}
+
 TEST_F(Input, PosesInAnotherUnitAreRefusedByReplayAndEvaluate) {
   use_poses(100);
   expect_refused(replay(), "poses.txt", "centimetres");

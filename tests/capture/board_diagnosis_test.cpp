@@ -83,6 +83,19 @@ TEST(BoardDiagnosis, BlamesTheBoardForTagsThatItDoesNotHold) {
   expect_cause(cause_of(board, frames, PoseRejection::no_tags), PoseSuspect::board, "tag36h11");
 }
 
+// A board of 5 x 4 tags whose ids are two too high, or in another order.
+TEST(BoardDiagnosis, BlamesTheBoardForIdsOfOtherTags) {
+  Board board = printed();
+  board.tags.clear();
+  for (const auto& [id, tag] : printed().tags) board.tags[id + 2] = tag;
+  expect_cause(cause_of(board, images(), PoseRejection::reprojection), PoseSuspect::board,
+               "2 too high");
+  board.tags.clear();
+  for (const auto& [id, tag] : printed().tags) board.tags[7 * id % 20] = tag;
+  expect_cause(cause_of(board, images(), PoseRejection::reprojection), PoseSuspect::board,
+               "another order");
+}
+
 TEST(BoardDiagnosis, BlamesTheCameraFileForAnotherLens) {
   const std::vector<Frame>& frames = images();
   auto other = kLens.intrinsics();

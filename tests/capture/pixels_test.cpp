@@ -404,6 +404,53 @@ TEST(ImageFolder, ReadsNamesWithColonsAndPerCents) {
       2);
 }
 
+/// A folder of pictures of 16 bits whose numbers end at `largest`.
+void write_deep(const TemporaryFolder& folder, int count, int largest, const char* ending) {
+  for (int i = 0; i < count; ++i) {
+    cv::Mat image(kStillSize.height_px, kStillSize.width_px, CV_16UC3,
+                  cv::Scalar::all(largest / 3));
+    image.at<cv::Vec3w>(i, 3)[1] = static_cast<std::uint16_t>(largest);
+    folder.write("deep/" + std::to_string(i) + ending, encoded(image, ending));
+  }
+}
+
+// 65535 / 257 is 255, and 32767.5 / 257 is 127.5: rounded, not cut off.
+TEST(StillReader, RoundsSixteenBitsToEight) {
+  const TemporaryFolder folder;
+  for (const char* ending : {".png", ".tiff"}) {
+    cv::Mat deep(1, 2, CV_16UC3, cv::Scalar::all(65535));
+    deep.at<cv::Vec3w>(0, 1) = {0, 32767, 257};
+    StillReader reader;
+    const cv::Mat image = reader.read(
+        folder.write(std::string("deep") + ending, encoded(deep, ending)), std::nullopt);
+    EXPECT_EQ(image.at<cv::Vec3b>(0, 0), cv::Vec3b(255, 255, 255)) << ending;
+    EXPECT_EQ(image.at<cv::Vec3b>(0, 1), cv::Vec3b(0, 127, 1)) << ending;
+    EXPECT_TRUE(reader.notes().empty()) << ending;
+  }
+}
+
+// Numbers of 12 bits in files of 16: many pictures are refused, few are doubted, since one may be
+// dark; numbers of 14 bits are doubted only.
+TEST(ImageFolder, NumbersOfFewerBitsThanTheirFilesAreToldOrRefused) {
+  const auto read = [](int count, int largest, const char* ending) {
+    const TemporaryFolder folder;
+    write_deep(folder, count, largest, ending);
+    const auto frames = open_image_folder(folder.path(), std::string("deep/%d") + ending,
+                                          kStillSize, {}, std::nullopt);
+    while (frames->next()) {
+    }
+    const auto notes = frames->report().notes;
+    return notes.empty() ? std::string() : notes.front();
+  };
+  for (const char* ending : {".png", ".tiff"}) {
+    expect_bad_input([&] { read(8, 4095, ending); }, "deep", "12 bits", "multiply 16");
+    expect_bad_input([&] { read(8, 1023, ending); }, "deep", "10 bits", "multiply 64");
+    EXPECT_NE(read(7, 4095, ending).find("12 bits"), std::string::npos);
+    EXPECT_NE(read(8, 4096, ending).find("14 bits"), std::string::npos);
+    EXPECT_EQ(read(8, 16384, ending), "");
+  }
+}
+
 /// 8-bit sRGB of one grey value of 16 bits.
 int grey_of(LightCurve curve, double signal, WidePrimaries primaries = WidePrimaries::none) {
   const LightConverter converter(curve, primaries);

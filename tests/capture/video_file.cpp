@@ -105,6 +105,7 @@ void write_video(const std::filesystem::path& path, const VideoSpec& spec) {
   codec.time_base = {1, 1000};
   codec.framerate = {25, 1};
   codec.gop_size = 12;
+  if (spec.pixel_aspect) codec.sample_aspect_ratio = av_d2q(*spec.pixel_aspect, 1000);
   codec.global_quality = FF_QP2LAMBDA;
   codec.flags |= AV_CODEC_FLAG_QSCALE;
   codec.strict_std_compliance = FF_COMPLIANCE_UNOFFICIAL;
@@ -121,6 +122,7 @@ void write_video(const std::filesystem::path& path, const VideoSpec& spec) {
   AVStream& stream = *avformat_new_stream(writer.output, nullptr);
   stream.time_base = codec.time_base;
   avcodec_parameters_from_context(stream.codecpar, &codec);
+  stream.sample_aspect_ratio = codec.sample_aspect_ratio;
   if (spec.clockwise_degrees) {
     auto* const matrix = reinterpret_cast<std::int32_t*>(
         av_stream_new_side_data(&stream, AV_PKT_DATA_DISPLAYMATRIX, 9 * sizeof(std::int32_t)));

@@ -32,7 +32,8 @@ struct VideoSpec {
   bool states_colours = true;
 
   std::vector<std::int64_t>
-      stamps_ms;  ///< of every frame; negative ones are hidden by an edit list
+      stamps_ms;                       ///< of every frame; negative ones are hidden by an edit list
+  std::optional<double> pixel_aspect;  ///< width of a pixel over its height
   std::optional<double> clockwise_degrees;  ///< a display matrix
   std::set<int> damaged;                    ///< frames with zeros in their data
 

@@ -231,6 +231,33 @@ TEST(VideoTurns, StoredPixelsAreTakenUnlessTheCameraIsForTurnedOnes) {
   }
 }
 
+// Stored 64 x 48 of pixels 4 : 3, shown 85 x 48. Of the stored pixels fy / fx is 4 / 3.
+TEST(VideoPixels, ThatAreNotSquareAreToldToTheCameraFile) {
+  const TemporaryFolder folder;
+  VideoSpec spec = numbered(2);
+  spec.pixel_aspect = 4.0 / 3;
+  write_video(folder / "wide.mkv", spec);
+  EXPECT_NEAR(video_pixel_aspect(folder / "wide.mkv"), 4.0 / 3, 1e-3);
+  const auto notes = [&](std::optional<double> focal_ratio) {
+    const auto source = open_video(folder / "wide.mkv", kVideoSize, {}, std::nullopt, focal_ratio);
+    while (source->next()) {
+    }
+    return source->report();
+  };
+  EXPECT_TRUE(says(notes(1.0), "pixels 1.333 times as wide as high"));
+  EXPECT_FALSE(says(notes(4.0 / 3), "as wide as high"));
+  EXPECT_FALSE(says(notes(std::nullopt), "as wide as high"));
+  expect_bad_input(
+      [&] {
+        (void)open_video(folder / "wide.mkv", {85, 48}, {}, std::nullopt);
+      },
+      "wide.mkv", "stored as 64x48", "by 0.75");
+
+  spec.pixel_aspect.reset();
+  write_video(folder / "square.mkv", spec);
+  EXPECT_EQ(video_pixel_aspect(folder / "square.mkv"), 1);
+}
+
 TEST(VideoFiles, DamagedFramesAreLeftOutAndCounted) {
   const TemporaryFolder folder;
   VideoSpec spec = numbered(20);

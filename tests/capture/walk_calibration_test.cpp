@@ -126,6 +126,22 @@ TEST(WalkCalibration, SquaresThatLookTooSmallOrTooLargeDoNotBendTheLens) {
   }
 }
 
+// Pixels 4 : 3 as a video states them: fy / fx. Without the statement the aspect is 33 deviations
+// of the prior off.
+TEST(WalkCalibration, BeginsWithTheAspectThatTheVideoStates) {
+  auto stored = camera_like(900, -0.1, {0, 0}).intrinsics();
+  stored.focal_px.y() *= 4.0 / 3;
+  const core::CameraModel camera(stored);
+  const auto found = calibrate_from_walk(sheet(), guessed_lens({1280, 720}, 4.0 / 3),
+                                         walk_round(sheet(), camera, 40, 25, 60, 5));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(find_fault(*found), "");
+  EXPECT_NEAR(number(*found, "aspect").prior, 4.0 / 3, 1e-9);
+  const auto& lens = found->camera.intrinsics();
+  EXPECT_NEAR(lens.focal_px.x(), 900, 4 * number(*found, "focal").sigma + 1);
+  EXPECT_NEAR(lens.focal_px.y() / lens.focal_px.x(), 4.0 / 3, 0.005);
+}
+
 TEST(WalkCalibration, LeavesWhatTheImagesDoNotTellAtItsPrior) {
   // An ideal lens, centred: nothing differs from what is believed but the focal length. Of six
   // numbers at three deviations one is kept by chance in sixty walks.
@@ -165,6 +181,8 @@ TEST(LensPrior, FollowsTheFilmThatExifMeans) {
   EXPECT_NEAR(stated_lens({1500, 1000}, 36).focal_px, 1500, 1e-9);
   // 60 degrees across 1280 px: 640 / tan(30 degrees).
   EXPECT_NEAR(guessed_lens({720, 1280}).focal_px, 640 * std::sqrt(3.0), 1e-9);
+  // 720 pixels down are as long as 360 across where these are twice as wide as high.
+  EXPECT_NEAR(guessed_lens({320, 720}, 2).focal_px, 180 * std::sqrt(3.0), 1e-9);
 }
 
 TEST(DefaultSheet, IsToldFromOthersByItsIds) {
