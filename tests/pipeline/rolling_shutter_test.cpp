@@ -201,7 +201,7 @@ class SyntheticShutter : public testing::Test {
     options.vertices = 2000;
     options.width_px = 480;
     options.height_px = 270;
-    options.frames = 120;
+    options.frames = 60;
     options.held_out = 0;
     options.samples = 1;
     options.readout_ms = readout_ms;
@@ -226,12 +226,12 @@ class SyntheticShutter : public testing::Test {
   tests::TemporaryFolder folder_;
 };
 
-// 3 degrees from frame to frame: the board's corners go 10 px while a frame is read.
+// 6 degrees from frame to frame: the board's corners go 10 px while a frame is read.
 TEST_F(SyntheticShutter, IsMeasuredAndPosesAreThoseOfTheMiddleRow) {
-  capture::Session session = recorded(20);
+  capture::Session session = recorded(10);
   const auto readout = measure_readout(session, {});
   ASSERT_TRUE(readout);
-  EXPECT_NEAR(readout->readout_s, 0.020, std::max(4 * readout->sigma_s, 0.0005));
+  EXPECT_NEAR(readout->readout_s, 0.010, std::max(4 * readout->sigma_s, 0.0005));
   const double as_one_mm = median_error_mm(session);
   Silent silent;
   complete_readout(session, {}, silent);
