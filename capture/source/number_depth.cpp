@@ -4,6 +4,7 @@
 #include "core/diagnostics/error.h"
 
 #include <fmt/format.h>
+#include <opencv2/core.hpp>
 
 #include <algorithm>
 
