@@ -24,6 +24,7 @@ struct ReplayReport {
   const pipeline::FrameStatistics& frames;
   const core::StageTimer& timer;
   fitting::FitStatistics fit;
+  double readout_s = 0;  ///< of the camera: told or measured (Intrinsics::readout_s)
   double finish_ms = 0;  ///< CPU time of what the fit put off to the end
   std::string representation;
   std::size_t patches = 0;

@@ -23,7 +23,12 @@ Eigen::Vector2f between(const std::vector<Eigen::Vector2f>& nodes, std::size_t f
 }  // namespace
 
 RowRectifier::RowRectifier(const capture::Session& session, const core::Mesh* mesh, int threads)
-    : camera_(session.camera), board_from_object_(session.board_from_object), threads_(threads) {
+    : camera_(session.camera),
+      board_from_object_(session.board_from_object),
+      mesh_(mesh),
+      threads_(threads) {}
+
+void RowRectifier::prepare() {
   columns_ = (camera_.width_px() - 1) / kNode_px + 2;
   rows_ = (camera_.height_px() - 1) / kNode_px + 2;
   for (int y = 0; y < rows_; ++y) {
@@ -33,9 +38,9 @@ RowRectifier::RowRectifier(const capture::Session& session, const core::Mesh* me
                           : Eigen::Vector2f::Constant(std::nanf("")));
     }
   }
-  if (mesh != nullptr) {
-    points_ = core::surface_points(*mesh);
-    depth_.emplace(*mesh, threads);
+  if (mesh_ != nullptr) {
+    points_ = core::surface_points(*mesh_);
+    depth_.emplace(*mesh_, threads_);
   }
 }
 
@@ -43,6 +48,7 @@ capture::Frame RowRectifier::rectify(const capture::Frame& frame,
                                      const Eigen::Isometry3d& camera_from_board,
                                      const capture::Twist& readout_motion) {
   if (readout_motion.isZero()) return frame;
+  if (rays_.empty()) prepare();
   see(camera_from_board);
   place_nodes(readout_motion);
   fill_map(camera_from_board);

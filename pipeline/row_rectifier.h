@@ -23,7 +23,8 @@ namespace sheen::pipeline {
 /// frame to frame.
 class RowRectifier {
  public:
-  /// Copies what it needs from the mesh; without one all lies on the board.
+  /// The mesh, which outlives this, may be null: then all lies on the board. Nothing is done before
+  /// the first frame in which something moved.
   RowRectifier(const capture::Session& session, const core::Mesh* mesh, int threads);
 
   /// The frame itself, untouched, where nothing moved. Else without luma (Frame::grey), and of the
@@ -38,6 +39,7 @@ class RowRectifier {
     float nearest = 0;
   };
 
+  void prepare();
   void see(const Eigen::Isometry3d& camera_from_board);
   void place_nodes(const capture::Twist& readout_motion);
   void fill_map(const Eigen::Isometry3d& camera_from_board);
@@ -45,6 +47,7 @@ class RowRectifier {
 
   core::CameraModel camera_;
   Eigen::Isometry3d board_from_object_;
+  const core::Mesh* mesh_;
   int threads_;
   int columns_ = 0, rows_ = 0;         ///< of the grid
   std::vector<Eigen::Vector2f> rays_;  ///< of its nodes, in the plane z = 1

@@ -16,6 +16,7 @@ namespace sheen::pipeline {
 namespace {
 
 constexpr int kStretches = 3, kStretchFrames = 14;
+constexpr int kMostFrames = 240;         // videos are decoded from their beginning
 constexpr double kLongestStep_s = 0.15;  // between frames, to know how the camera moves
 constexpr double kSteady_s = 1e-9;       // rows are read one after the other; nothing is expected
 constexpr int kFewestFrames = 10;
@@ -29,25 +30,6 @@ struct Posed {
   int index = 0;
   capture::FramePose pose;
 };
-
-/// Frames of one stretch, with the motion that each shows during its readout.
-std::vector<Posed> pose_stretch(const capture::Session& session, const FrameChoice& choice,
-                                int start, double readout_s) {
-  capture::Session rolling = session;
-  auto intrinsics = session.camera.intrinsics();
-  intrinsics.readout_s = readout_s;
-  rolling.camera = core::CameraModel(intrinsics);
-  const auto estimator = make_pose_estimator(rolling, choice.pose_source, choice.gate);
-  const auto frames = capture::open_frames(session, start, start + kStretchFrames);
-  std::vector<Posed> posed;
-  while (const auto frame = frames->next()) {
-    const auto result = estimator->estimate(*frame);
-    if (const auto* pose = std::get_if<capture::FramePose>(&result)) {
-      posed.push_back({frame->time_s, frame->index, *pose});
-    }
-  }
-  return posed;
-}
 
 /// Inner product of two motions by how they bend the board's image beyond what a pose takes up:
 /// 6 x 6, px^2. `corners` counts those that are seen.
@@ -114,25 +96,47 @@ struct Regression {
   }
 };
 
-/// Sums over all stretches, near a first guess of the readout.
+/// Adds a stretch: each frame against how the camera moves between its neighbours.
+void add_stretch(const std::vector<Posed>& posed, const capture::Board& board,
+                 const core::CameraModel& camera, Regression& regression) {
+  for (std::size_t i = 1; i + 1 < posed.size(); ++i) {
+    const Posed &before = posed[i - 1], &after = posed[i + 1];
+    const double time_s = after.time_s - before.time_s;
+    const bool are_neighbours = after.index - before.index == 2;
+    if (!are_neighbours || !(time_s > 0) || time_s > 2 * kLongestStep_s) continue;
+    const capture::Twist velocity =
+        capture::twist_between(before.pose.camera_from_board, after.pose.camera_from_board) /
+        time_s;
+    int corners = 0;
+    const auto product = bending(board, camera, posed[i].pose.camera_from_board, corners);
+    regression.add(product, velocity, posed[i].pose.readout_motion, corners);
+  }
+}
+
+/// Reads the first `count` frames once; the motion that each shows leans towards what a readout of
+/// `readout_s` makes expected.
 Regression look_at_stretches(const capture::Session& session, const FrameChoice& choice,
                              const capture::Board& board, int count, double readout_s) {
+  capture::Session rolling = session;
+  auto intrinsics = session.camera.intrinsics();
+  intrinsics.readout_s = readout_s;
+  rolling.camera = core::CameraModel(intrinsics);
+  const auto frames = capture::open_frames(session, choice.start, choice.start + count);
   Regression regression;
   for (int stretch = 0; stretch < kStretches; ++stretch) {
-    const int middle = count * (2 * stretch + 1) / (2 * kStretches);
-    const int start = choice.start + middle - kStretchFrames / 2;
-    const auto posed = pose_stretch(session, choice, start, readout_s);
-    for (std::size_t i = 1; i + 1 < posed.size(); ++i) {
-      const double time_s = posed[i + 1].time_s - posed[i - 1].time_s;
-      const bool are_neighbours = posed[i + 1].index - posed[i - 1].index == 2;
-      if (!are_neighbours || !(time_s > 0) || time_s > 2 * kLongestStep_s) continue;
-      const capture::Twist velocity = capture::twist_between(posed[i - 1].pose.camera_from_board,
-                                                             posed[i + 1].pose.camera_from_board) /
-                                      time_s;
-      int corners = 0;
-      const auto product = bending(board, session.camera, posed[i].pose.camera_from_board, corners);
-      regression.add(product, velocity, posed[i].pose.readout_motion, corners);
+    const int first =
+        choice.start + count * (2 * stretch + 1) / (2 * kStretches) - kStretchFrames / 2;
+    const auto estimator = make_pose_estimator(rolling, choice.pose_source, choice.gate);
+    std::vector<Posed> posed;
+    while (const auto frame = frames->next()) {
+      if (frame->index < first) continue;
+      const auto result = estimator->estimate(*frame);
+      if (const auto* pose = std::get_if<capture::FramePose>(&result)) {
+        posed.push_back({frame->time_s, frame->index, *pose});
+      }
+      if (frame->index + 1 == first + kStretchFrames) break;
     }
+    add_stretch(posed, board, session.camera, regression);
   }
   return regression;
 }
@@ -141,14 +145,16 @@ Regression look_at_stretches(const capture::Session& session, const FrameChoice&
 
 std::optional<Readout> measure_readout(const capture::Session& session, const FrameChoice& choice) {
   const auto board = tag_board(session, choice.pose_source);
-  if (!board) return std::nullopt;
-  const auto count = capture::open_frames(session, choice.start, choice.end)->frame_count();
-  if (!count || *count < kStretches * kStretchFrames) return std::nullopt;
+  const bool has_times = session.video || session.fps || session.stamps;
+  if (!board || !has_times) return std::nullopt;
+  const auto all = capture::open_frames(session, choice.start, choice.end)->frame_count();
+  const int count = std::min(all.value_or(0), kMostFrames);
+  if (count < kStretches * kStretchFrames) return std::nullopt;
   // Each frame's motion leans towards what is expected of it. Expect nothing, then what that shows:
   // the slope follows by the share of the leaning, which both tell.
-  const auto none = look_at_stretches(session, choice, *board, *count, kSteady_s).solve();
+  const auto none = look_at_stretches(session, choice, *board, count, kSteady_s).solve();
   if (!none) return std::nullopt;
-  const auto some = look_at_stretches(session, choice, *board, *count, none->readout_s).solve();
+  const auto some = look_at_stretches(session, choice, *board, count, none->readout_s).solve();
   if (!some) return std::nullopt;
   const double upright = 2 - some->readout_s / none->readout_s;  // 1: nothing leans
   if (!(upright > kLeastUpright && upright <= 1.2)) return std::nullopt;

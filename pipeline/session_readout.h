@@ -15,7 +15,7 @@ struct Readout {
   double sigma_s = 0;    ///< standard deviation of it
 };
 
-/// Measures from three short stretches of a video how long its camera takes to read a frame: how
+/// Measures from three short stretches of the first 240 frames how long its camera takes to read a frame: how
 /// tags are bent in frames against how the camera moves from frame to frame. No value for a global
 /// shutter, for recordings that do not tell (a camera at rest, single pictures, poses from a file)
 /// and where the motion explains less than half of the bending.

@@ -6,6 +6,7 @@
 #include "evaluation/views/evaluate_views.h"
 #include "fitting/patch_light_field.h"
 #include "pipeline/pose_frames.h"
+#include "pipeline/session_readout.h"
 #include "render/renderer.h"
 #include "render/surface/surface_renderer.h"
 
@@ -78,6 +79,7 @@ ConversionCost::OnViews cost_on_views(render::Context& gl, const fitting::Model&
   capture::Session session = capture::open_session(folder);
   TerminalSink sink(context);
   session.take_offset(model.mesh.offset);
+  pipeline::complete_readout(session, frames, sink);
   const auto views = pipeline::pose_frames(session, frames, sink);
   int done = 0;
   const auto summaries = evaluation::evaluate_views(

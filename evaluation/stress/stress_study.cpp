@@ -5,6 +5,7 @@
 #include "core/files/staged_output.h"
 #include "evaluation/comparison/measure_candidate.h"
 #include "pipeline/pose_frames.h"
+#include "pipeline/session_readout.h"
 
 #include <Eigen/LU>
 #include <fmt/core.h>
@@ -63,7 +64,9 @@ std::vector<pipeline::PosedFrame> poses_of(const std::filesystem::path& folder,
   choice.gate = gate;
   pipeline::ProgressSink silent;
   try {
-    return pipeline::pose_frames(capture::open_session(folder), choice, silent);
+    capture::Session session = capture::open_session(folder);
+    pipeline::complete_readout(session, choice, silent);
+    return pipeline::pose_frames(session, choice, silent);
   } catch (const core::Error&) {
     return {};
   }

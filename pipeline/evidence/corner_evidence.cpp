@@ -179,7 +179,8 @@ std::vector<Finding> CornerEvidence::findings() const {
   if (is_seen(shutter, kShutter_px)) {
     return {{"rolling-shutter",
              fmt::format("the camera reads its rows one after the other: {:.0f} % of the time "
-                         "between frames explain {}; move more slowly, or use a global shutter",
+                         "between frames explain {}; move more slowly, or tell the time: "
+                         "readout_ms in camera.yaml (sheen replay measures it where it can)",
                          100 * std::abs(shutter.solution[kShutter]), explained(shutter))}};
   }
   return {};
