@@ -15,10 +15,10 @@ struct Readout {
   double sigma_s = 0;    ///< standard deviation of it
 };
 
-/// Measures from three short stretches of the first 240 frames how long its camera takes to read a frame: how
-/// tags are bent in frames against how the camera moves from frame to frame. No value for a global
-/// shutter, for recordings that do not tell (a camera at rest, single pictures, poses from a file)
-/// and where the motion explains less than half of the bending.
+/// Measures how long a recording's camera takes to read a frame, from three short stretches of its
+/// first 240 frames: how tags are bent in a frame against how the camera moves between its
+/// neighbours. No value for a global shutter, for recordings that do not tell (a camera at rest,
+/// pictures without times, poses from a file) and where the motion explains too little.
 std::optional<Readout> measure_readout(const capture::Session& session, const FrameChoice& choice);
 
 /// Measures it where the camera file does not say and puts it into the session's camera, with a
