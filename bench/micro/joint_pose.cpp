@@ -79,7 +79,7 @@ Eigen::Isometry3d start_of(const Scene& scene) {
                                 translation[1], translation[2]});
 }
 
-void BM_Own(benchmark::State& state) {
+void own_solver(benchmark::State& state) {
   const Scene scene(static_cast<int>(state.range(0)));
   double error_mm = 0;
   for (auto _ : state) {
@@ -89,7 +89,7 @@ void BM_Own(benchmark::State& state) {
   state.counters["error_mm"] = error_mm;
 }
 
-void BM_Ceres(benchmark::State& state) {
+void ceres_solver(benchmark::State& state) {
   const Scene scene(static_cast<int>(state.range(0)));
   double error_mm = 0;
   for (auto _ : state) {
@@ -113,8 +113,8 @@ void BM_Ceres(benchmark::State& state) {
   state.counters["error_mm"] = error_mm;
 }
 
-BENCHMARK(BM_Own)->Arg(4)->Arg(24)->Unit(benchmark::kMicrosecond);
-BENCHMARK(BM_Ceres)->Arg(4)->Arg(24)->Unit(benchmark::kMicrosecond);
+BENCHMARK(own_solver)->Arg(4)->Arg(24)->Unit(benchmark::kMicrosecond);
+BENCHMARK(ceres_solver)->Arg(4)->Arg(24)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace sheen::capture

@@ -173,7 +173,7 @@ double position_error_mm(const Eigen::Isometry3d& estimate, const Eigen::Isometr
 }
 
 /// BGR -> pose, the tags followed.
-void BM_Track(benchmark::State& state) {
+void track(benchmark::State& state) {
   const Recording& seen = recording(state);
   const auto estimator = make_tag_pose_estimator(seen.board(), seen.camera(), {});
   // Let the motion be known: the first frames are searched.
@@ -193,7 +193,7 @@ void BM_Track(benchmark::State& state) {
 }
 
 /// The tracker alone: the grey image is there.
-void BM_TrackGrey(benchmark::State& state) {
+void track_grey(benchmark::State& state) {
   const Recording& seen = recording(state);
   TagTracker tracker(seen.board(), seen.camera(), *find_tag_family("tag36h11", 1));
   std::vector<cv::Mat> grey(kFrames);
@@ -218,7 +218,7 @@ void BM_TrackGrey(benchmark::State& state) {
   state.counters["corner_rms_px"] = std::sqrt(square_px / corners);
 }
 
-void BM_Grey(benchmark::State& state) {
+void make_grey(benchmark::State& state) {
   const Recording& seen = recording(state);
   cv::Mat grey;
   for (auto _ : state) {
@@ -228,7 +228,7 @@ void BM_Grey(benchmark::State& state) {
 }
 
 /// libapriltag alone on the grey image: images of this size are decimated by 2.
-void BM_Libapriltag(benchmark::State& state) {
+void detect_only(benchmark::State& state) {
   const Recording& seen = recording(state);
   const TagDetector detector(*find_tag_family("tag36h11", 1));
   cv::Mat grey;
@@ -237,7 +237,7 @@ void BM_Libapriltag(benchmark::State& state) {
 }
 
 /// BGR -> pose by searching every image: detection, refined corners, joint pose.
-void BM_Detect(benchmark::State& state) {
+void detect_and_solve(benchmark::State& state) {
   const Recording& seen = recording(state);
   BoardTagFinder finder(seen.board(), seen.camera());
   double worst_mm = 0;
@@ -250,11 +250,11 @@ void BM_Detect(benchmark::State& state) {
   state.counters["worst_mm"] = worst_mm;
 }
 
-BENCHMARK(BM_Track)->Arg(24)->Arg(40)->Unit(benchmark::kMillisecond);
-BENCHMARK(BM_TrackGrey)->Arg(24)->Arg(40)->Unit(benchmark::kMillisecond);
-BENCHMARK(BM_Grey)->Arg(24)->Unit(benchmark::kMillisecond);
-BENCHMARK(BM_Libapriltag)->Arg(24)->Arg(40)->Unit(benchmark::kMillisecond);
-BENCHMARK(BM_Detect)->Arg(24)->Arg(40)->Unit(benchmark::kMillisecond);
+BENCHMARK(track)->Arg(24)->Arg(40)->Unit(benchmark::kMillisecond);
+BENCHMARK(track_grey)->Arg(24)->Arg(40)->Unit(benchmark::kMillisecond);
+BENCHMARK(make_grey)->Arg(24)->Unit(benchmark::kMillisecond);
+BENCHMARK(detect_only)->Arg(24)->Arg(40)->Unit(benchmark::kMillisecond);
+BENCHMARK(detect_and_solve)->Arg(24)->Arg(40)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace sheen::capture
