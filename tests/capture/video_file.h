@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-extern "C" {
-#include <libavcodec/codec_id.h>
-#include <libavutil/pixfmt.h>
-}
-
 #include <Eigen/Core>
 
 #include <cstdint>
@@ -14,6 +9,11 @@ extern "C" {
 #include <optional>
 #include <set>
 #include <vector>
+
+extern "C" {
+#include <libavcodec/codec_id.h>
+#include <libavutil/pixfmt.h>
+}
 
 namespace sheen::capture::test {
 
