@@ -26,6 +26,7 @@ void FitStage::integrate(TrackedFrame& tracked) {
 }
 
 void FitStage::observe(const capture::Frame& frame, core::StageTimes& times, PosedFrame& posed) {
+  const PosedFrame tracked = posed;
   // Find out which vertices are seen, and refine the pose.
   const core::CameraModel& camera = parts_.session.camera_of(frame.index);
   Eigen::Isometry3d camera_from_object = posed.camera_from_board * parts_.session.board_from_object;
@@ -65,7 +66,7 @@ void FitStage::observe(const capture::Frame& frame, core::StageTimes& times, Pos
     return;
   }
   fitting::note_seen(*samples, statistics_.seen);
-  integrated_.push_back({frame.index, camera_from_object, gain, posed.readout_motion});
+  integrated_.push_back({frame.index, camera_from_object, gain, tracked});
   const core::Observation observation{
       frame.index, frame.image, camera, camera_from_object, parts_.observer.view(),
       *samples,    gain,        depth_m};

@@ -26,8 +26,9 @@ using SamplesListener = std::function<void(int frame_index, const core::SampleBa
 struct IntegratedView {
   int frame_index = 0;
   Eigen::Isometry3d camera_from_object = Eigen::Isometry3d::Identity();
-  double gain = 1;                                         ///< by which its samples were divided
-  capture::Twist readout_motion = capture::Twist::Zero();  ///< that its image is rectified by
+  double gain = 1;  ///< by which its samples were divided
+  /// Before any refinement: what its image was rectified with.
+  PosedFrame tracked{};
 };
 
 /// Second stage: posed image -> observation -> fit. The only place that counts frames.

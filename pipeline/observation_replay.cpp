@@ -13,14 +13,13 @@ void replay_observations(const capture::Session& session, const core::Mesh& mesh
   const auto frames =
       capture::open_frames(session, views.front().frame_index, views.back().frame_index + 1);
   RowRectifier rectifier(session, &mesh, 1);
-  const Eigen::Isometry3d object_from_board = session.board_from_object.inverse();
   auto view = views.begin();
   while (view != views.end()) {
     const auto read = frames->next();
     if (!read) break;
     if (read->index != view->frame_index) continue;
-    const capture::Frame frame = rectifier.rectify(
-        *read, view->camera_from_object * object_from_board, view->readout_motion);
+    const capture::Frame frame =
+        rectifier.rectify(*read, view->tracked.camera_from_board, view->tracked.readout_motion);
     const core::CameraModel& camera = session.camera_of(frame.index);
     observer.see(camera, view->camera_from_object);
     core::SampleBatch& samples = observer.sample(frame.image);

@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 #include <opencv2/core/mat.hpp>
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -33,29 +34,29 @@ class RowRectifier {
                          const capture::Twist& readout_motion);
 
  private:
-  /// Where a rolling shutter shows what a global one shows at the nodes of a grid, px, per depth.
-  struct Nodes {
-    std::vector<Eigen::Vector2f> far, near;  ///< infinitely far, and at `nearest` (1/m)
-    float nearest = 0;
-  };
+  /// What a rolling shutter does to a pixel: where it shows what a global one shows there, px, if
+  /// that is infinitely far; how that place changes with the inverse depth, px m; and the inverse
+  /// depth of the board, 1/m, 0 above its horizon.
+  using Node = Eigen::Matrix<float, 5, 1>;
 
   void prepare();
   void see(const Eigen::Isometry3d& camera_from_board);
-  void place_nodes(const capture::Twist& readout_motion);
-  void fill_map(const Eigen::Isometry3d& camera_from_board);
-  [[nodiscard]] float inverse_depth(int x, int y, const Eigen::Vector3f& plane) const;
+  void place_nodes(const Eigen::Isometry3d& camera_from_board,
+                   const capture::Twist& readout_motion);
+  void fill_map();
+  [[nodiscard]] float inverse_depth_of_mesh(int x, int y) const;
 
   core::CameraModel camera_;
   Eigen::Isometry3d board_from_object_;
   const core::Mesh* mesh_;
   int threads_;
-  int columns_ = 0, rows_ = 0;         ///< of the grid
-  std::vector<Eigen::Vector2f> rays_;  ///< of its nodes, in the plane z = 1
+  std::size_t columns_ = 0, rows_ = 0;                ///< of the grid
+  std::vector<std::optional<Eigen::Vector3d>> rays_;  ///< of its nodes, z = 1
   core::SurfacePoints points_;
   std::optional<core::DepthImage> depth_;
   core::VertexView view_;
-  Nodes nodes_;
-  cv::Mat map_;  ///< CV_32FC2
+  std::vector<Node> nodes_;  ///< of the grid, row by row
+  cv::Mat map_;              ///< CV_32FC2
 };
 
 }  // namespace sheen::pipeline

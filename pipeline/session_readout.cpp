@@ -35,33 +35,28 @@ struct Posed {
 /// 6 x 6, px^2. `corners` counts those that are seen.
 Eigen::Matrix<double, 6, 6> bending(const capture::Board& board, const core::CameraModel& camera,
                                     const Eigen::Isometry3d& camera_from_board, int& corners) {
-  std::vector<core::ProjectedPoint> seen;
-  std::vector<Eigen::Vector3d> points;
+  std::vector<Eigen::Matrix<double, 2, 6>> by_twist;
+  std::vector<double> shares;
   for (const auto& [id, tag] : board.tags) {
     for (const Eigen::Vector3d& corner : tag.corners_in_board()) {
       const Eigen::Vector3d point = camera_from_board * corner;
-      const auto projected = core::project_with_derivative(camera, point);
-      const bool is_inside = projected && projected->pixel.minCoeff() >= 0 &&
-                             projected->pixel.x() < camera.width_px() &&
-                             projected->pixel.y() < camera.height_px();
+      const auto seen = core::project_with_derivative(camera, point);
+      const bool is_inside = seen && seen->pixel.minCoeff() >= 0 &&
+                             seen->pixel.x() < camera.width_px() &&
+                             seen->pixel.y() < camera.height_px();
       if (!is_inside) continue;
-      seen.push_back(*projected);
-      points.push_back(point);
+      by_twist.push_back(core::pixel_by_twist(seen->pixel_by_point, point));
+      shares.push_back(capture::row_share(seen->pixel.y(), camera.height_px()));
     }
   }
-  corners = static_cast<int>(seen.size());
-  const auto rows = static_cast<Eigen::Index>(2 * seen.size());
+  corners = static_cast<int>(by_twist.size());
+  const auto rows = static_cast<Eigen::Index>(2 * by_twist.size());
   if (rows <= 12) return Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::MatrixXd by_pose(rows, 6), by_motion(rows, 6);
-  for (std::size_t i = 0; i < seen.size(); ++i) {
+  for (std::size_t i = 0; i < by_twist.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(2 * i);
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis);
-      by_pose.block<2, 1>(row, axis) = seen[i].pixel_by_point * unit.cross(points[i]);
-      by_pose.block<2, 1>(row, 3 + axis) = seen[i].pixel_by_point * unit;
-    }
-    by_motion.middleRows<2>(row) =
-        capture::row_share(seen[i].pixel.y(), camera.height_px()) * by_pose.middleRows<2>(row);
+    by_pose.middleRows<2>(row) = by_twist[i];
+    by_motion.middleRows<2>(row) = shares[i] * by_twist[i];
   }
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(by_pose);
   const Eigen::MatrixXd turned = qr.householderQ().transpose() * by_motion;
@@ -169,8 +164,10 @@ void complete_readout(capture::Session& session, const FrameChoice& choice, Prog
   intrinsics.readout_s = readout->readout_s;
   session.camera = core::CameraModel(intrinsics);
   sink.note(fmt::format(
-      "{}: the camera reads its rows one after the other, a frame in {:.1f} +- {:.1f} ms; poses "
-      "and images are corrected for it (readout_ms in camera.yaml tells it before)",
+      "{0}: the camera reads its rows one after the other, a frame in {1:.1f} +- {2:.1f} ms; poses "
+      "and images are corrected for it (to know it from the start, live too: readout_ms: {1:.1f} "
+      "in "
+      "camera.yaml)",
       session.folder.string(), 1e3 * readout->readout_s, 1e3 * readout->sigma_s));
 }
 

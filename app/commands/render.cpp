@@ -7,7 +7,6 @@
 #include "core/image/write_image.h"
 #include "fitting/model_file/model_file.h"
 #include "pipeline/pose_frames.h"
-#include "pipeline/posed_views.h"
 #include "pipeline/session_mesh.h"
 #include "pipeline/session_readout.h"
 #include "render/renderer.h"
@@ -37,13 +36,12 @@ void render_views(const RenderOptions& options, const CommandContext& context) {
   const auto gl = render::make_osmesa_context();
   const auto renderer = render::make_renderer(*gl, model.mesh, *model.light_field, context.threads);
   int done = 0;
-  pipeline::for_each_view(
-      session, nullptr, views,
-      [&](const capture::Frame& frame, const Eigen::Isometry3d& camera_from_object) {
-        const auto view = renderer->render(session.camera_of(frame.index), camera_from_object);
-        core::write_image(options.output / fmt::format("{:04d}.png", frame.index), view.image);
-        sink.progress({"rendering", ++done, static_cast<int>(views.size())});
-      });
+  for (const pipeline::PosedFrame& view : views) {
+    const auto drawn = renderer->render(session.camera_of(view.index),
+                                        view.camera_from_board * session.board_from_object);
+    core::write_image(options.output / fmt::format("{:04d}.png", view.index), drawn.image);
+    sink.progress({"rendering", ++done, static_cast<int>(views.size())});
+  }
   context.publish({{"views", done}, {"folder", options.output.string()}},
                   fmt::format("written  {} views to {}\n", done, options.output.string()));
 }

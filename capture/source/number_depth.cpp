@@ -24,9 +24,8 @@ int bits_for(int largest) {
 
 std::string fault_text(int largest) {
   return fmt::format(
-      "of 16 bits hold no number above {}, as of cameras of {} bits: read so they are dark, at "
-      "most "
-      "{} of 255",
+      "of 16 bits hold no number above {}, as of cameras of {} bits: read so they are dark, "
+      "at most {} of 255",
       largest, bits_for(largest), largest / 257);
 }
 

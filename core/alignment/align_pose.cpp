@@ -140,20 +140,16 @@ class Aligner {
         [&](std::size_t i, double residual, const ProjectedPoint& at, const auto& reading) {
           const Eigen::Vector3d arm =
               (state.camera_from_object * points_.position[i].cast<double>() - centre) / radius_m_;
-          Eigen::Matrix<double, 2, 6> pixel_by_twist;
-          for (int axis = 0; axis < 3; ++axis) {
-            pixel_by_twist.col(axis) = at.pixel_by_point * Eigen::Vector3d::Unit(axis).cross(arm);
-          }
-          pixel_by_twist.rightCols<3>() = at.pixel_by_point;
+          const auto by_twist = pixel_by_twist(at.pixel_by_point, arm);
           Vector7d J;
-          J.head<6>() = pixel_by_twist.transpose() * reading.gradient;
+          J.head<6>() = by_twist.transpose() * reading.gradient;
           J[6] = -static_cast<double>(points_.luma[i]);
           const double trust = static_cast<double>(points_.weight[i]);
           const double size = std::abs(residual);
           const double robust = trust * (size <= width ? 1 : width / size);
           system.H.selfadjointView<Eigen::Lower>().rankUpdate(J, robust);
           system.g += robust * residual * J;
-          system.motion += pixel_by_twist.transpose() * pixel_by_twist;
+          system.motion += by_twist.transpose() * by_twist;
           system.cost += trust * (size <= width ? size * size / 2 : width * (size - width / 2));
           system.weight += trust;
           ++system.points;

@@ -34,4 +34,14 @@ std::optional<ProjectedPoint> project_with_derivative(const CameraModel& camera,
       *pixel, lens.focal_px.asDiagonal() * (distortion_derivative(lens, ideal) * ideal_by_point)};
 }
 
+Eigen::Matrix<double, 2, 6> pixel_by_twist(const Eigen::Matrix<double, 2, 3>& pixel_by_point,
+                                           const Eigen::Vector3d& arm) {
+  Eigen::Matrix<double, 2, 6> by_twist;
+  for (int axis = 0; axis < 3; ++axis) {
+    by_twist.col(axis) = pixel_by_point * Eigen::Vector3d::Unit(axis).cross(arm);
+  }
+  by_twist.rightCols<3>() = pixel_by_point;
+  return by_twist;
+}
+
 }  // namespace sheen::core

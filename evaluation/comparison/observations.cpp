@@ -50,7 +50,7 @@ void observe_frames(const pipeline::FrameChoice& choice, int threads, pipeline::
     const auto observation = observer.observe(posed->index, tracked.frame.image,
                                               session.camera_of(posed->index), camera_from_object);
     evidence.look_at(tracked.frame, posed->camera_from_board, observation);
-    observations.views.push_back({posed->index, camera_from_object, 1, posed->readout_motion});
+    observations.views.push_back({posed->index, camera_from_object, 1, *posed});
     observations.samples.push_back(observation.samples);
     samples += observation.samples.size();
   });

@@ -30,8 +30,7 @@ OptionTable option_table(Options& options) {
        {"anchors", OffsetPlaces::anchors}},
       "Where the model keeps how colours change with the direction: at every vertex; at anchors "
       "between which the surface blends: fewer bytes, better on smooth glossy shapes, slower; "
-      "auto: "
-      "where directions left out of the fit are predicted better"));
+      "auto: where directions left out of the fit are predicted better"));
   table.push_back(number_option("anchor-px", options.anchor_px, kLeastAnchor_px, kMostAnchor_px,
                                 "The distance of the finer anchors, texels"));
   return table;

@@ -88,20 +88,23 @@ double CaptureEvidence::grain() const {
   return grains.empty() ? 0 : core::upper_median(grains);
 }
 
-/// Where the object is not where poses and mesh put it, nowhere in the images, or corners do not
-/// fit.
-bool CaptureEvidence::has_doubtful_poses() const {
-  return !corners_->findings().empty() || !outline_.misplacement() || !outline_.findings().empty();
+/// Corners do not fit, the object is not where poses and mesh put it, or nowhere in the images.
+bool CaptureEvidence::are_poses_doubtful(const std::vector<Finding>& corners,
+                                         const std::vector<Finding>& misplaced) const {
+  return !corners.empty() || !misplaced.empty() || !outline_.misplacement();
 }
 
 std::optional<capture::IdFault> CaptureEvidence::board_fault() const {
-  return tags_ && has_doubtful_poses() ? tags_->fault() : std::nullopt;
+  if (!tags_ || !are_poses_doubtful(corners_->findings(), outline_.findings())) return std::nullopt;
+  return tags_->fault();
 }
 
 std::vector<Finding> CaptureEvidence::faults() const {
+  const std::vector<Finding> corners = corners_ ? corners_->findings() : std::vector<Finding>{};
+  const std::vector<Finding> misplaced = outline_.findings();
   std::vector<Finding> faults;
-  if (tags_ && has_doubtful_poses()) {
-    append(tags_->findings(!outline_.findings().empty()), faults);
+  if (tags_ && are_poses_doubtful(corners, misplaced)) {
+    append(tags_->findings(!misplaced.empty()), faults);
     if (!faults.empty() && faults.front().cause == "tag-ids") return faults;
   }
   const double noise = grain();
@@ -111,14 +114,12 @@ std::vector<Finding> CaptureEvidence::faults() const {
                                            noise)});
   }
   if (auto unit = depth_.finding()) faults.push_back(std::move(*unit));
-  if (corners_) append(corners_->findings(), faults);
-  const bool has_wrong_poses = corners_ && !corners_->findings().empty();
+  append(corners, faults);
   const LightEvidence::Verdict light = light_.verdict();
   append(LightEvidence::drifts(light), faults);
-  if (has_wrong_poses || noise > kGrainy) return faults;
+  if (!corners.empty() || noise > kGrainy) return faults;
 
   // Outlines and colours are off, too, where poses are: the cause has been named.
-  const std::vector<Finding> misplaced = outline_.findings();
   append(misplaced.empty() ? LightEvidence::contradictions(light) : misplaced, faults);
   return faults;
 }

@@ -49,7 +49,8 @@ class CaptureEvidence {
   void measure_grain(const cv::Mat& image);
   [[nodiscard]] double grain() const;
   [[nodiscard]] std::optional<Finding> coverage() const;
-  [[nodiscard]] bool has_doubtful_poses() const;
+  [[nodiscard]] bool are_poses_doubtful(const std::vector<Finding>& corners,
+                                        const std::vector<Finding>& misplaced) const;
 
   Eigen::Isometry3d board_from_object_;
   Eigen::Vector3d middle_;  ///< of the object, in its frame

@@ -79,11 +79,7 @@ void CornerEvidence::look_at(const capture::Frame& frame,
     const auto seen = core::project_with_derivative(camera_, in_camera);
     if (!seen) continue;
     residual.segment<2>(row) = corners[i].residual_px;
-    for (int axis = 0; axis < 3; ++axis) {
-      const Eigen::Vector3d unit = Eigen::Vector3d::Unit(axis);
-      by_pose.block<2, 1>(row, axis) = seen->pixel_by_point * unit.cross(in_camera);
-      by_pose.block<2, 1>(row, 3 + axis) = seen->pixel_by_point * unit;
-    }
+    by_pose.middleRows<2>(row) = core::pixel_by_twist(seen->pixel_by_point, in_camera);
     for (int unknown = 0; unknown < kCameraUnknowns; ++unknown) {
       const auto moved = changed_[static_cast<std::size_t>(unknown)].project(in_camera);
       if (moved) by_fault.block<2, 1>(row, unknown) = (*moved - seen->pixel) / kStep;
@@ -179,8 +175,8 @@ std::vector<Finding> CornerEvidence::findings() const {
   if (is_seen(shutter, kShutter_px)) {
     return {{"rolling-shutter",
              fmt::format("the camera reads its rows one after the other: {:.0f} % of the time "
-                         "between frames explain {}; move more slowly, or tell the time: "
-                         "readout_ms in camera.yaml (sheen replay measures it where it can)",
+                         "between frames explain {}; move more slowly, or state how long a frame "
+                         "takes: readout_ms in camera.yaml (sheen replay measures it where it can)",
                          100 * std::abs(shutter.solution[kShutter]), explained(shutter))}};
   }
   return {};

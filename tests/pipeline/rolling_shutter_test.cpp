@@ -7,8 +7,13 @@
 #include "capture/pose/trajectory.h"
 #include "capture/synthetic/synthetic_session.h"
 #include "core/diagnostics/error.h"
+#include "core/mesh/read_mesh.h"
+#include "core/visibility/raster_visibility.h"
+#include "pipeline/observation_replay.h"
 #include "pipeline/pose_frames.h"
+#include "pipeline/pose_stage.h"
 #include "pipeline/row_rectifier.h"
+#include "pipeline/session_parts.h"
 #include "pipeline/session_readout.h"
 #include "tests/capture/rendered_board.h"
 #include "tests/support/temporary_folder.h"
@@ -187,12 +192,6 @@ TEST(CameraFile, TellsTheReadout) {
   EXPECT_THROW(static_cast<void>(capture::read_camera(path)), core::Error);
 }
 
-class Silent final : public ProgressSink {
- public:
-  void progress(const StepProgress& /*progress*/) override {}
-  void note(const std::string& /*text*/) override {}
-};
-
 class SyntheticShutter : public testing::Test {
  protected:
   capture::Session recorded(double readout_ms) const {
@@ -211,7 +210,7 @@ class SyntheticShutter : public testing::Test {
   }
   /// Median distance of cameras from where they were.
   static double median_error_mm(const capture::Session& session) {
-    Silent silent;
+    ProgressSink silent;
     const auto truth = capture::read_trajectory(session.folder / "truth_poses.txt");
     std::vector<double> errors;
     for (const PosedFrame& frame : pose_frames(session, {}, silent)) {
@@ -233,14 +232,47 @@ TEST_F(SyntheticShutter, IsMeasuredAndPosesAreThoseOfTheMiddleRow) {
   ASSERT_TRUE(readout);
   EXPECT_NEAR(readout->readout_s, 0.010, std::max(4 * readout->sigma_s, 0.0005));
   const double as_one_mm = median_error_mm(session);
-  Silent silent;
+  ProgressSink silent;
   complete_readout(session, {}, silent);
   EXPECT_LT(median_error_mm(session), as_one_mm / 3);
 }
 
+// Undo and fitters of images see a frame again: to the bit as at first, wherever its pose has been
+// refined to since.
+TEST_F(SyntheticShutter, FramesAreRectifiedAgainAsAtFirst) {
+  capture::Session session = recorded(10);
+  auto intrinsics = session.camera.intrinsics();
+  intrinsics.readout_s = 0.010;
+  session.camera = core::CameraModel(intrinsics);
+  const core::Mesh mesh = core::read_mesh(session.mesh);
+  PoseStage poses(capture::open_frames(session, 0, 5), make_pose_estimator(session, {}, {}),
+                  RowRectifier(session, &mesh, 2));
+  FrameStatistics frames;
+  int rectified = 0;  // a frame that is searched may be posed by its corners, without motion
+  std::vector<cv::Mat> images;
+  std::vector<IntegratedView> views;
+  while (const auto tracked = poses.next()) {
+    const auto posed = frames.count(*tracked);
+    ASSERT_TRUE(posed);
+    rectified += posed->readout_motion.isZero() ? 0 : 1;
+    images.push_back(tracked->frame.image);
+    const Eigen::Isometry3d refined =
+        posed->camera_from_board * Eigen::Translation3d(1e-4, 0, 0) * session.board_from_object;
+    views.push_back({posed->index, refined, 1, *posed});
+  }
+  ViewObserver observer(mesh, core::make_raster_visibility(mesh, 1), {}, 1);
+  std::size_t seen = 0;
+  replay_observations(session, mesh, views, observer, nullptr, [&](const core::Observation& again) {
+    EXPECT_EQ(cv::norm(again.image, images[seen], cv::NORM_INF), 0);
+    ++seen;
+  });
+  EXPECT_EQ(seen, 5u);
+  EXPECT_GE(rectified, 3);
+}
+
 TEST_F(SyntheticShutter, AGlobalOneIsLeftAlone) {
   capture::Session session = recorded(0);
-  Silent silent;
+  ProgressSink silent;
   complete_readout(session, {}, silent);
   EXPECT_EQ(session.camera.intrinsics().readout_s, 0);
 }
