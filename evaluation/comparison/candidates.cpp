@@ -35,7 +35,7 @@ std::vector<Candidate> known_candidates() {
       {"sparse", "sparse", kSparse, "sparse"},
       {"sparse-0.01", "sparse 0.01", kSparse, "sparse", {{"tolerance", "0.01"}}},
       {"sparse-0.005", "sparse 0.005", kSparse, "sparse", {{"tolerance", "0.005"}}},
-      {"detail", "detail texture", kTexture, "detail"},
+      {"detail", "detail texture", kTexture, "detail", {{"offsets", "vertex"}}},
       {"detail-anchors", "detail texture, anchors", kTexture, "detail", {{"offsets", "anchors"}}},
   };
 }

@@ -68,23 +68,29 @@ Eigen::Vector3f AnchoredOffsets::colour(std::size_t triangle, const Eigen::Vecto
   return sum;
 }
 
-LevelAtPlace AnchoredOffsets::level_at(std::size_t level, std::size_t triangle,
-                                       const Eigen::Vector3f& barycentric) const {
-  LevelAtPlace place(*this, core::normal_on(mesh_, triangle, barycentric));
+void AnchoredOffsets::add(std::size_t triangle, const Eigen::Vector3f& barycentric,
+                          const DirectionRows& w, const ColourRows& sum) const {
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    add_level(level, triangle, barycentric, w, sum);
+  }
+}
+
+void AnchoredOffsets::add_level(std::size_t level, std::size_t triangle,
+                                const Eigen::Vector3f& barycentric, const DirectionRows& w,
+                                const ColourRows& sum) const {
+  const Eigen::Vector3f n = core::normal_on(mesh_, triangle, barycentric);
   for (const CornerWeights& blend : blends(triangle)) {
     if (blend.anchor < first_[level] || blend.anchor >= first_[level + 1]) continue;
     if (models_.term_count(blend.anchor) == 1) continue;
-    place.parts_.push_back({blend.anchor, blend.at(barycentric), models_.patch(blend.anchor)});
+    add_patch(asked_patch(blend.anchor, n), models_.patch(blend.anchor), blend.at(barycentric), w,
+              sum);
   }
-  return place;
 }
 
-Eigen::Vector3f LevelAtPlace::colour(const Eigen::Vector3f& w) const {
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  for (const Part& part : parts_) {
-    sum += part.weight * sparse::evaluate(part.model, anchors_.uv_at(part.anchor, n_, w));
-  }
-  return sum;
+void AnchoredOffsets::add_at(std::size_t vertex, const DirectionRows& w,
+                             const ColourRows& sum) const {
+  if (corner_of_[vertex] == kNoCorner) return;
+  add(corner_of_[vertex] / 3, Eigen::Vector3f::Unit(corner_of_[vertex] % 3), w, sum);
 }
 
 Eigen::Vector3f AnchoredOffsets::colour_at(std::size_t vertex, const Eigen::Vector2f& uv) const {

@@ -4,8 +4,8 @@
 #include "core/geometry/tangent_frame.h"
 #include "core/mesh/mesh.h"
 #include "fitting/detail/anchor_layout.h"
+#include "fitting/detail/patch_kernels.h"
 #include "fitting/sparse/light_field_model.h"
-#include "fitting/sparse/patch_model.h"
 
 #include <Eigen/Core>
 
@@ -39,29 +39,6 @@ struct CornerWeights {
   }
 };
 
-class AnchoredOffsets;
-
-/// What the anchors of a level say at a place, their patches unpacked.
-class LevelAtPlace {
- public:
-  [[nodiscard]] Eigen::Vector3f colour(const Eigen::Vector3f& w) const;
-
- private:
-  friend AnchoredOffsets;
-  struct Part {
-    std::size_t anchor;
-    float weight;
-    sparse::PatchModel model;
-  };
-
-  LevelAtPlace(const AnchoredOffsets& anchors, const Eigen::Vector3f& n)
-      : anchors_(anchors), n_(n) {}
-
-  const AnchoredOffsets& anchors_;
-  Eigen::Vector3f n_;
-  std::vector<Part> parts_;
-};
-
 /// How colours change with the direction, known at anchors and blended in between: on every level a
 /// place blends what its triangle's corners do, and the levels are added up.
 class AnchoredOffsets {
@@ -89,15 +66,24 @@ class AnchoredOffsets {
   /// Offset at a place on a triangle, unit vector `w` towards the viewer.
   [[nodiscard]] Eigen::Vector3f colour(std::size_t triangle, const Eigen::Vector3f& barycentric,
                                        const Eigen::Vector3f& w) const;
-  /// The part of it that one level says, for many directions at one place.
-  [[nodiscard]] LevelAtPlace level_at(std::size_t level, std::size_t triangle,
-                                      const Eigen::Vector3f& barycentric) const;
+  /// sum += the offsets in many directions.
+  void add(std::size_t triangle, const Eigen::Vector3f& barycentric, const DirectionRows& w,
+           const ColourRows& sum) const;
+  /// The same for a vertex.
+  void add_at(std::size_t vertex, const DirectionRows& w, const ColourRows& sum) const;
+  /// The part of `add` that one level says.
+  void add_level(std::size_t level, std::size_t triangle, const Eigen::Vector3f& barycentric,
+                 const DirectionRows& w, const ColourRows& sum) const;
   /// Offset of a vertex towards `uv` on its disc; zero of one that no triangle uses.
   [[nodiscard]] Eigen::Vector3f colour_at(std::size_t vertex, const Eigen::Vector2f& uv) const;
 
   /// Direction in which an anchor is asked where the normal is `n`, on the anchor's disc.
   [[nodiscard]] Eigen::Vector2f uv_at(std::size_t anchor, const Eigen::Vector3f& n,
                                       const Eigen::Vector3f& w) const;
+  /// The same for many directions.
+  [[nodiscard]] AskedPatch asked_patch(std::size_t anchor, const Eigen::Vector3f& n) const {
+    return {frames_[anchor], n, asked_ == AskedDirection::mirrored};
+  }
 
  private:
   core::Mesh mesh_;

@@ -6,11 +6,14 @@
 #include "core/geometry/tangent_frame.h"
 #include "fitting/detail/check_directions.h"
 #include "fitting/detail/fit_anchors.h"
+#include "fitting/detail/patch_kernels.h"
+#include "fitting/sparse/columns.h"
 #include "fitting/sparse/light_field_model.h"
 #include "fitting/sparse/workspaces.h"
 
 #include <Eigen/Core>
 
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -48,18 +51,14 @@ class VertexOffsets {
     }
   }
 
-  [[nodiscard]] Eigen::Vector3f colour(std::size_t triangle, const Eigen::Vector3f& barycentric,
-                                       const Eigen::Vector3f& w) const {
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  /// sum += what they say at a place.
+  void add(std::size_t triangle, const Eigen::Vector3f& barycentric, const DirectionRows& w,
+           const ColourRows& sum) const {
     for (Eigen::Index corner = 0; corner < 3; ++corner) {
       const std::uint32_t vertex = mesh_.triangles[triangle][corner];
-      const core::TangentFrame& frame = frames_[vertex];
-      const Eigen::Vector2f uv(w.dot(frame.tangent), w.dot(frame.bitangent));
-      // Behind the vertex's horizon: on the rim.
-      const bool is_behind = w.dot(frame.normal) < 0.0f && uv.squaredNorm() > 0.0f;
-      sum += barycentric[corner] * models_.colour(vertex, is_behind ? uv.normalized() : uv);
+      const AskedPatch asked{frames_[vertex], frames_[vertex].normal, false};
+      add_patch(asked, models_.patch(vertex), barycentric[corner], w, sum);
     }
-    return sum;
   }
 
  private:
@@ -85,27 +84,45 @@ struct SquaredError {
   double squared = 0, weight = 0;
 };
 
+/// What `offsets` leave of a triangle's samples.
+template <typename Offsets>
+std::vector<Eigen::Vector3f> left_by(const Offsets& offsets, const TriangleSamples& samples,
+                                     std::size_t triangle, const std::vector<TriangleSample>& all) {
+  std::array<sparse::Column, 3> w{}, said{};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      w[axis].row[i] = all[i].w[static_cast<Eigen::Index>(axis)];
+    }
+  }
+  offsets.add(triangle, samples.middle(triangle),
+              {w[0].row, w[1].row, w[2].row, sparse::padded(all.size())},
+              {said[0].row, said[1].row, said[2].row});
+  std::vector<Eigen::Vector3f> left(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    left[i] = all[i].rgb - Eigen::Vector3f(said[0].row[i], said[1].row[i], said[2].row[i]);
+  }
+  return left;
+}
+
 /// Of what `offsets` predict of a triangle's checks: how they differ from the mean of the others.
 template <typename Offsets>
 SquaredError error_on(const Offsets& offsets, const TriangleSamples& samples,
                       std::size_t triangle) {
   const std::vector<TriangleSample> all = samples.of(triangle);
-  const auto left = [&](const TriangleSample& one) -> Eigen::Vector3f {
-    return one.rgb - offsets.colour(triangle, samples.middle(triangle), one.w);
-  };
+  const std::vector<Eigen::Vector3f> left = left_by(offsets, samples, triangle, all);
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   float weight = 0;
-  for (const TriangleSample& one : all) {
-    if (is_check_direction(one.w)) continue;
-    sum += one.weight * left(one);
-    weight += one.weight;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (is_check_direction(all[i].w)) continue;
+    sum += all[i].weight * left[i];
+    weight += all[i].weight;
   }
   SquaredError error;
   if (!(weight > 0.0f)) return error;
-  for (const TriangleSample& one : all) {
-    if (!is_check_direction(one.w)) continue;
-    error.squared += static_cast<double>(one.weight * (left(one) - sum / weight).squaredNorm());
-    error.weight += static_cast<double>(one.weight);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (!is_check_direction(all[i].w)) continue;
+    error.squared += static_cast<double>(all[i].weight * (left[i] - sum / weight).squaredNorm());
+    error.weight += static_cast<double>(all[i].weight);
   }
   return error;
 }
@@ -134,9 +151,14 @@ OffsetErrors check_offsets(const core::Mesh& mesh, const sparse::SparseFitter& p
                            const sparse::Options& options, int threads) {
   const float tolerance = patches.statistics().tolerance.value_or(sparse::kToleranceOfUnknownNoise);
   const VertexOffsets vertex(mesh, patches, options, tolerance, threads);
-  const AnchoredOffsets anchors = fit_anchored_offsets(
-      mesh, samples, FittedDirections::without_checks, spacing_m, options, tolerance, threads);
-  return {error_of(vertex, samples, threads), error_of(anchors, samples, threads)};
+  OffsetErrors errors{error_of(vertex, samples, threads), 0};
+  const auto anchors_win = [&](const AnchoredOffsets& anchors) {
+    errors.anchors = error_of(anchors, samples, threads);
+    return errors.anchors_win();
+  };
+  anchors_win(fit_anchored_offsets(mesh, samples, FittedDirections::without_checks, spacing_m,
+                                   options, tolerance, threads, anchors_win));
+  return errors;
 }
 
 }  // namespace sheen::fitting::detail

@@ -2,8 +2,12 @@
 #include "fitting/detail/fit_anchors.h"
 
 #include "core/concurrency/parallel_for.h"
+#include "core/geometry/disc_map.h"
+#include "core/geometry/tangent_frame.h"
 #include "core/mesh/interpolation.h"
 #include "fitting/detail/detail_light_field.h"
+#include "fitting/detail/patch_kernels.h"
+#include "fitting/sparse/columns.h"
 #include "fitting/sparse/workspaces.h"
 
 #include <algorithm>
@@ -21,8 +25,9 @@ namespace {
 
 /// Of the levels, in spacings of the finest.
 constexpr std::array<float, 2> kSpacings{8.0f / 3.0f, 1.0f};
-/// Levels in the order in which they are fitted.
-constexpr std::array<std::size_t, 7> kSweeps{0, 0, 1, 1, 0, 1, 1};
+/// Levels in the order in which they are swept, first and then again.
+constexpr std::array<std::size_t, 4> kFirstSweeps{0, 0, 1, 1};
+constexpr std::array<std::size_t, 3> kFurtherSweeps{0, 1, 1};
 /// Part of a patch's tolerance that an anchor minds: the noise of many samples averages out.
 constexpr float kToleranceShare = 0.5f;
 
@@ -31,30 +36,28 @@ sparse::LightFieldModel zeros(std::size_t count) {
 }
 
 /// Samples of all triangles, and what anchors leave of their differences from the triangles' means.
+/// Number by number, of every triangle whole groups: those behind its samples weigh nothing.
 class Residuals {
  public:
-  struct Sample {
-    Eigen::Vector3f w;
-    float weight;
-    Eigen::Vector3f left;
-    std::array<Eigen::Vector3f, kSpacings.size()> said;  ///< by the anchors of a level
-  };
+  using Numbers = std::vector<float>;
+  using Colours = std::array<Numbers, 3>;
 
   Residuals(const TriangleSamples& samples, FittedDirections fitted, int threads)
-      : samples_(samples), threads_(threads), offsets_(1, 0) {
-    const Eigen::Vector3f nothing = Eigen::Vector3f::Zero();
+      : samples_(samples), threads_(threads), first_(1, 0) {
     for (std::size_t triangle = 0; triangle < samples.triangle_count(); ++triangle) {
       for (const TriangleSample& one : samples.of(triangle)) {
         if (fitted == FittedDirections::without_checks && is_check_direction(one.w)) continue;
-        left_.push_back({one.w, one.weight, one.rgb, {nothing, nothing}});
+        append(one);
       }
-      offsets_.push_back(left_.size());
+      while (weight_.size() % sparse::kRowGroup != 0) append_nothing();
+      first_.push_back(weight_.size());
     }
+    for (Colours& said : said_) said.fill(Numbers(weight_.size(), 0.0f));
   }
 
   /// After the anchors of a level have changed; returns the weighted sum of squares.
   double update(const AnchoredOffsets& anchors, std::size_t level) {
-    std::vector<double> squared(offsets_.size() - 1, 0.0);
+    std::vector<double> squared(first_.size() - 1, 0.0);
     core::parallel_for(squared.size(), threads_, [&](std::size_t begin, std::size_t end) {
       for (std::size_t triangle = begin; triangle < end; ++triangle) {
         squared[triangle] = update(anchors, level, triangle);
@@ -63,36 +66,78 @@ class Residuals {
     return std::accumulate(squared.begin(), squared.end(), 0.0);
   }
 
-  [[nodiscard]] std::span<const Sample> of(std::size_t triangle) const {
-    return {left_.data() + offsets_[triangle], offsets_[triangle + 1] - offsets_[triangle]};
+  /// A triangle's samples.
+  struct Rows {
+    DirectionRows w;
+    const float* weight;
+    std::array<const float*, 3> left;
+  };
+  [[nodiscard]] Rows of(std::size_t triangle) const {
+    const std::size_t first = first_[triangle];
+    return {directions(triangle),
+            weight_.data() + first,
+            {left_[0].data() + first, left_[1].data() + first, left_[2].data() + first}};
   }
 
  private:
+  void append(const TriangleSample& sample) {
+    x_.push_back(sample.w.x());
+    y_.push_back(sample.w.y());
+    z_.push_back(sample.w.z());
+    weight_.push_back(sample.weight);
+    for (std::size_t c = 0; c < 3; ++c)
+      left_[c].push_back(sample.rgb[static_cast<Eigen::Index>(c)]);
+  }
+
+  /// Where the last one lies, so that no other cell of directions is touched.
+  void append_nothing() {
+    append({{x_.back(), y_.back(), z_.back()}, Eigen::Vector3f::Zero(), 0.0f});
+  }
+
+  [[nodiscard]] DirectionRows directions(std::size_t triangle) const {
+    const std::size_t first = first_[triangle];
+    return {x_.data() + first, y_.data() + first, z_.data() + first, first_[triangle + 1] - first};
+  }
+
   double update(const AnchoredOffsets& anchors, std::size_t level, std::size_t triangle) {
-    const std::span<Sample> samples(left_.data() + offsets_[triangle],
-                                    offsets_[triangle + 1] - offsets_[triangle]);
-    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-    float weight = 0;
-    const LevelAtPlace place = anchors.level_at(level, triangle, samples_.middle(triangle));
-    for (Sample& one : samples) {
-      const Eigen::Vector3f said = place.colour(one.w);
-      one.left += std::exchange(one.said[level], said) - said;
-      sum += one.weight * one.left;
-      weight += one.weight;
-    }
-    if (!(weight > 0.0f)) return 0;
+    const DirectionRows w = directions(triangle);
+    std::array<sparse::Column, 3> said{};
+    anchors.add_level(level, triangle, samples_.middle(triangle), w,
+                      {said[0].row, said[1].row, said[2].row});
+    const float* const weight = weight_.data() + first_[triangle];
+    const float weights = std::accumulate(weight, weight + w.count, 0.0f);
+    if (!(weights > 0.0f)) return 0;
     double squared = 0;
-    for (Sample& one : samples) {
-      one.left -= sum / weight;
-      squared += static_cast<double>(one.weight * one.left.squaredNorm());
+    for (std::size_t c = 0; c < 3; ++c) {
+      squared +=
+          update(said[c], weight, weights, w.count, said_[level][c].data() + first_[triangle],
+                 left_[c].data() + first_[triangle]);
     }
     return squared;
   }
 
+  /// One channel of a triangle.
+  static double update(const sparse::Column& now, const float* weight, float weights,
+                       std::size_t count, float* said, float* left) {
+    float sum = 0;
+    for (std::size_t row = 0; row < count; ++row) {
+      left[row] += std::exchange(said[row], now.row[row]) - now.row[row];
+      sum += weight[row] * left[row];
+    }
+    float squared = 0;
+    for (std::size_t row = 0; row < count; ++row) {
+      left[row] -= sum / weights;
+      squared += weight[row] * left[row] * left[row];
+    }
+    return static_cast<double>(squared);
+  }
+
   const TriangleSamples& samples_;
   int threads_;
-  std::vector<std::size_t> offsets_;
-  std::vector<Sample> left_;
+  std::vector<std::size_t> first_;
+  Numbers x_, y_, z_, weight_;
+  Colours left_;
+  std::array<Colours, kSpacings.size()> said_;  ///< by the anchors of a level
 };
 
 /// A triangle that blends an anchor, and the weight in its middle.
@@ -144,122 +189,186 @@ struct Given {
   int threads;
 };
 
-/// What anchors are asked for, in cells of directions.
+/// The directions in which an anchor is asked, which do not change while it is fitted: cells of a
+/// grid over its disc.
 class AskedCells {
  public:
-  /// Gathers what the followers of an anchor ask it for.
-  void gather(const AnchoredOffsets& anchors, std::size_t anchor,
-              std::span<const Follower> followers, const Given& given, const Residuals& residuals) {
-    uvs_.clear();
-    for (const Follower& follower : followers) {
-      const Eigen::Vector3f n =
-          core::normal_on(given.mesh, follower.triangle, given.samples.middle(follower.triangle));
-      for (const Residuals::Sample& one : residuals.of(follower.triangle)) {
-        uvs_.push_back(anchors.uv_at(anchor, n, one.w));
-      }
-    }
-    const int grid = grid_for(uvs_, static_cast<std::size_t>(given.options.max_samples));
-    cells_.fill({});
+  AskedCells() = default;
+  AskedCells(const AnchoredOffsets& anchors, std::size_t anchor,
+             std::span<const Follower> followers, const Given& given, const Residuals& residuals) {
+    const std::vector<Eigen::Vector2f> uvs = asked(anchors, anchor, followers, given, residuals);
+    const int grid = grid_for(uvs, static_cast<std::size_t>(given.options.max_samples));
+    number(uvs, grid);
     std::size_t next = 0;
     for (const Follower& follower : followers) {
-      for (const Residuals::Sample& one : residuals.of(follower.triangle)) {
-        const Eigen::Vector2f& uv = uvs_[next++];
-        // Squared: what lies near an anchor is its own.
-        cells_[cell_at(uv, grid)].add(follower.weight * follower.weight * one.weight, uv, one.left);
+      const Residuals::Rows rows = residuals.of(follower.triangle);
+      for (std::size_t row = 0; row < rows.w.count; ++row, ++next) {
+        Cell& cell = cells_[of_sample_[next]];
+        const float weight = follower.weight * follower.weight * rows.weight[row];
+        cell.weight += weight;
+        cell.uv += weight * uvs[next];
       }
+    }
+    for (Cell& cell : cells_) {
+      if (cell.weight > 0.0f) cell.uv /= cell.weight;
     }
   }
 
+  [[nodiscard]] bool empty() const { return cells_.empty(); }
+
   /// A sample for every cell: what the anchor says there itself and what is left.
   std::span<const sparse::DirectedColour> read(const AnchoredOffsets& anchors, std::size_t anchor,
+                                               std::span<const Follower> followers,
+                                               const Residuals& residuals,
                                                std::span<sparse::DirectedColour> samples) const {
+    std::array<Eigen::Vector3f, sparse::kMaxStoredSamples> left;
+    std::fill_n(left.begin(), cells_.size(), Eigen::Vector3f::Zero());
+    const std::uint8_t* cell = of_sample_.data();
+    for (const Follower& follower : followers) {
+      const auto& [w, weight, of] = residuals.of(follower.triangle);
+      // Squared: what lies near an anchor is its own.
+      const float squared = follower.weight * follower.weight;
+      for (std::size_t row = 0; row < w.count; ++row) {
+        left[*cell++] +=
+            squared * weight[row] * Eigen::Vector3f(of[0][row], of[1][row], of[2][row]);
+      }
+    }
     std::size_t count = 0;
-    for (const Cell& cell : cells_) {
-      if (!(cell.weight > 0.0f)) continue;
-      const Eigen::Vector2f uv = cell.uv / cell.weight;
-      samples[count++] = {uv, anchors.models().colour(anchor, uv) + cell.left / cell.weight};
+    for (std::size_t i = 0; i < cells_.size(); ++i) {
+      const auto& [of_cell, uv] = cells_[i];
+      if (!(of_cell > 0.0f)) continue;
+      samples[count++] = {uv, anchors.models().colour(anchor, uv) + left[i] / of_cell};
     }
     return samples.first(count);
   }
 
  private:
-  /// Weighted sums.
   struct Cell {
     float weight = 0;
-    Eigen::Vector2f uv = Eigen::Vector2f::Zero();
-    Eigen::Vector3f left = Eigen::Vector3f::Zero();
-
-    void add(float w, const Eigen::Vector2f& at, const Eigen::Vector3f& colour) {
-      weight += w;
-      uv += w * at;
-      left += w * colour;
-    }
+    Eigen::Vector2f uv = Eigen::Vector2f::Zero();  ///< mean
   };
 
-  std::vector<Eigen::Vector2f> uvs_;
-  std::array<Cell, kMostCells> cells_;
+  static std::vector<Eigen::Vector2f> asked(const AnchoredOffsets& anchors, std::size_t anchor,
+                                            std::span<const Follower> followers, const Given& given,
+                                            const Residuals& residuals) {
+    std::vector<Eigen::Vector2f> uvs;
+    sparse::Column u, v;  // NOLINT(cppcoreguidelines-pro-type-member-init): filled below
+    for (const Follower& follower : followers) {
+      const DirectionRows w = residuals.of(follower.triangle).w;
+      const Eigen::Vector3f n =
+          core::normal_on(given.mesh, follower.triangle, given.samples.middle(follower.triangle));
+      asked_directions(anchors.asked_patch(anchor, n), w, u.row, v.row);
+      for (std::size_t row = 0; row < w.count; ++row) uvs.emplace_back(u.row[row], v.row[row]);
+    }
+    return uvs;
+  }
+
+  /// Those of the grid's cells that are asked, in its order.
+  void number(std::span<const Eigen::Vector2f> uvs, int grid) {
+    std::array<std::uint8_t, kMostCells> number{};
+    for (const Eigen::Vector2f& uv : uvs) number[cell_at(uv, grid)] = 1;
+    std::uint8_t next = 0;
+    for (std::uint8_t& of_cell : number) {
+      if (of_cell != 0) of_cell = next++;
+    }
+    cells_.resize(next);
+    of_sample_.reserve(uvs.size());
+    for (const Eigen::Vector2f& uv : uvs) of_sample_.push_back(number[cell_at(uv, grid)]);
+  }
+
+  std::vector<Cell> cells_;
+  std::vector<std::uint8_t> of_sample_;  ///< of the followers' rows
 };
 
 using Models = std::vector<sparse::PatchModel>;
 
-/// Every anchor of a level anew, towards its own value and what all together left.
-void sweep(const Given& given, const Residuals& residuals,
-           const std::vector<std::vector<Follower>>& followers, std::size_t level,
-           AnchoredOffsets& anchors) {
-  const std::size_t first = anchors.first_of(level);
-  Models next(anchors.first_of(level + 1) - first);
-  sparse::Workspaces workspaces(given.options);
-  core::parallel_for(
-      next.size(), given.threads,
-      [&](std::size_t begin, std::size_t end) {
-        AskedCells cells;
-        workspaces.with_one([&](sparse::Workspace& workspace) {
-          workspace.selection.set_tolerance(given.tolerance);
-          for (std::size_t i = begin; i < end; ++i) {
-            cells.gather(anchors, first + i, followers[first + i], given, residuals);
-            const auto samples = cells.read(anchors, first + i, workspace.samples);
-            if (!samples.empty()) next[i] = workspace.selection.choose(samples).model;
-            if (next[i].term_count() == 1) next[i].coefficient[0].setZero();
-          }
-        });
-      },
-      16);
-  for (std::size_t i = 0; i < next.size(); ++i) anchors.models().store(first + i, next[i]);
-}
+/// Anchors on their way.
+class AnchorFit {
+ public:
+  AnchorFit(const Given& given, AnchoredOffsets start, Residuals& residuals)
+      : given_(given),
+        residuals_(residuals),
+        anchors_(std::move(start)),
+        followers_(followers_of(anchors_, given.samples)),
+        cells_(followers_.size()) {}
 
-/// Anchors and what they leave.
-struct Swept {
-  AnchoredOffsets anchors;
-  double squared;
+  /// Makes the residuals those of these anchors.
+  void leave() {
+    for (std::size_t level = 0; level < kSpacings.size(); ++level) {
+      residuals_.update(anchors_, level);
+    }
+  }
+
+  /// Sweeps over all anchors of these levels, one after another; returns what they leave, the
+  /// weighted sum of squares.
+  double sweep(std::span<const std::size_t> levels) {
+    double squared = 0;
+    for (const std::size_t level : levels) {
+      sweep(level);
+      squared = residuals_.update(anchors_, level);
+    }
+    return squared;
+  }
+
+  [[nodiscard]] AnchoredOffsets& anchors() { return anchors_; }
+
+ private:
+  /// Every anchor of a level anew, towards its own value and what all together left.
+  void sweep(std::size_t level) {
+    const std::size_t first = anchors_.first_of(level);
+    Models next(anchors_.first_of(level + 1) - first);
+    sparse::Workspaces workspaces(given_.options);
+    core::parallel_for(
+        next.size(), given_.threads,
+        [&](std::size_t begin, std::size_t end) {
+          workspaces.with_one([&](sparse::Workspace& workspace) {
+            workspace.selection.set_tolerance(given_.tolerance);
+            for (std::size_t i = begin; i < end; ++i) next[i] = chosen(first + i, workspace);
+          });
+        },
+        16);
+    for (std::size_t i = 0; i < next.size(); ++i) anchors_.models().store(first + i, next[i]);
+  }
+
+  [[nodiscard]] sparse::PatchModel chosen(std::size_t anchor, sparse::Workspace& workspace) {
+    const std::span<const Follower> followers = followers_[anchor];
+    AskedCells& cells = cells_[anchor];
+    if (cells.empty()) cells = AskedCells(anchors_, anchor, followers, given_, residuals_);
+    const auto samples = cells.read(anchors_, anchor, followers, residuals_, workspace.samples);
+    sparse::PatchModel model;
+    if (!samples.empty()) model = workspace.selection.choose(samples).model;
+    if (model.term_count() == 1) model.coefficient[0].setZero();
+    return model;
+  }
+
+  const Given& given_;
+  Residuals& residuals_;
+  AnchoredOffsets anchors_;
+  std::vector<std::vector<Follower>> followers_;  ///< of every anchor
+  std::vector<AskedCells> cells_;                 ///< of those that have been fitted
 };
-
-Swept swept(const Given& given, AnchoredOffsets anchors, std::span<const std::size_t> levels,
-            Residuals& residuals) {
-  const auto followers = followers_of(anchors, given.samples);
-  double squared = 0;
-  for (std::size_t level = 0; level < kSpacings.size(); ++level) {
-    squared = residuals.update(anchors, level);
-  }
-  for (const std::size_t level : levels) {
-    sweep(given, residuals, followers, level, anchors);
-    squared = residuals.update(anchors, level);
-  }
-  return {std::move(anchors), squared};
-}
 
 /// Asked in the directions that leave less after the first sweep.
 AnchoredOffsets fitted(const Given& given, const std::vector<AnchorLevel>& levels,
-                       Residuals& residuals) {
+                       Residuals& residuals, const IsEnough& is_enough) {
   std::size_t count = 0;
   for (const AnchorLevel& level : levels) count += level.vertices.size();
-  const std::span sweeps(kSweeps);
-  const auto first = [&](AskedDirection asked) {
-    return swept(given, {given.mesh, levels, asked, zeros(count)}, sweeps.first(1), residuals);
+  const auto start = [&](AskedDirection asked) {
+    return AnchorFit(given, {given.mesh, levels, asked, zeros(count)}, residuals);
   };
-  Swept same = first(AskedDirection::same);
-  Swept mirrored = first(AskedDirection::mirrored);
-  Swept& better = mirrored.squared < same.squared ? mirrored : same;
-  return swept(given, std::move(better.anchors), sweeps.subspan(1), residuals).anchors;
+  const std::span first(kFirstSweeps);
+  const auto left_by = [&](AnchorFit& fit) {
+    fit.leave();
+    return fit.sweep(first.first(1));
+  };
+  AnchorFit same = start(AskedDirection::same);
+  AnchorFit mirrored = start(AskedDirection::mirrored);
+  const double left_by_same = left_by(same);
+  AnchorFit& better = left_by(mirrored) < left_by_same ? mirrored : same;
+  better.leave();
+  better.sweep(first.subspan(1));
+  if (!is_enough(better.anchors())) better.sweep(kFurtherSweeps);
+  return std::move(better.anchors());
 }
 
 /// Anchors of a level that some vertex needs: one that differs from zero needs all that it blends.
@@ -302,37 +411,52 @@ std::shared_ptr<const AnchoredOffsets> without_idle(const core::Mesh& mesh,
                                                  std::move(kept));
 }
 
+/// What anchors say of a vertex, on average over its views.
 Eigen::Vector3f mean_over_views(const AnchoredOffsets& anchors, std::size_t vertex,
                                 std::span<const sparse::KeptSample> samples) {
-  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  const core::TangentFrame frame = core::tangent_frame(anchors.mesh().normals[vertex]);
+  std::array<sparse::Column, 3> w{}, said{};
   float weight = 0;
-  for (const sparse::KeptSample& kept : samples) {
-    sum += kept.weight * anchors.colour_at(vertex, kept.sample.uv);
-    weight += kept.weight;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Eigen::Vector3f towards_viewer =
+        frame.in_object(core::hemisphere_from_disc(samples[i].sample.uv));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      w[axis].row[i] = towards_viewer[static_cast<Eigen::Index>(axis)];
+    }
+    weight += samples[i].weight;
   }
-  return weight > 0.0f ? Eigen::Vector3f(sum / weight) : Eigen::Vector3f::Zero();
+  if (!(weight > 0.0f)) return Eigen::Vector3f::Zero();
+  anchors.add_at(vertex, {w[0].row, w[1].row, w[2].row, sparse::padded(samples.size())},
+                 {said[0].row, said[1].row, said[2].row});
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    sum += samples[i].weight * Eigen::Vector3f(said[0].row[i], said[1].row[i], said[2].row[i]);
+  }
+  return sum / weight;
 }
 
 }  // namespace
 
 AnchoredOffsets fit_anchored_offsets(const core::Mesh& mesh, const TriangleSamples& samples,
                                      FittedDirections directions, float spacing_m,
-                                     const sparse::Options& options, float tolerance, int threads) {
+                                     const sparse::Options& options, float tolerance, int threads,
+                                     const IsEnough& is_enough) {
   const Given given{mesh, samples, options, kToleranceShare * tolerance, threads};
   std::vector<AnchorLevel> levels;
   for (const float spacings : kSpacings) {
     levels.push_back({scatter_anchors(mesh, spacings * spacing_m), spacings * spacing_m});
   }
   Residuals residuals(samples, directions, threads);
-  return fitted(given, levels, residuals);
+  return fitted(given, levels, residuals, is_enough);
 }
 
 FittedAnchors fit_anchors(const core::Mesh& mesh, const sparse::SparseFitter& patches,
                           const TriangleSamples& samples, float spacing_m,
                           const sparse::Options& options, int threads) {
   const float tolerance = patches.statistics().tolerance.value_or(sparse::kToleranceOfUnknownNoise);
-  const AnchoredOffsets anchors = fit_anchored_offsets(mesh, samples, FittedDirections::all,
-                                                       spacing_m, options, tolerance, threads);
+  const AnchoredOffsets anchors =
+      fit_anchored_offsets(mesh, samples, FittedDirections::all, spacing_m, options, tolerance,
+                           threads, [](const AnchoredOffsets& /*early*/) { return false; });
   FittedAnchors found{without_idle(mesh, anchors),
                       std::vector<Eigen::Vector3f>(mesh.positions.size(), Eigen::Vector3f::Zero())};
   if (!found.offsets) return found;

@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -23,15 +24,21 @@ struct FittedAnchors {
   std::vector<Eigen::Vector3f> mean;
 };
 
+/// Whether anchors that were swept over a few times will do.
+using IsEnough = std::function<bool(const AnchoredOffsets&)>;
+
 /// Anchors on two levels, the finer ones as far apart as `spacing_m` (> 0), fitted to what the
 /// samples of triangles differ by from their means. An anchor's samples are those of all triangles
 /// that blend it, averaged where they ask it in about the same direction; its terms are chosen as a
 /// patch's of this tolerance are. Sweeps over all anchors of a level, each towards what the blends
-/// of all levels leave. Of the two ways of asking them the one that leaves less after the first
-/// sweep is taken. Takes 56 bytes for every fitted sample. The same on any number of threads.
+/// of all levels leave: four, and three more unless the first are enough. Of the two ways of asking
+/// them the one that leaves less after the first sweep is taken. Takes 52 bytes for every fitted
+/// sample, of each triangle a multiple of eight, and one for every anchor that blends there. The
+/// same on any number of threads.
 AnchoredOffsets fit_anchored_offsets(const core::Mesh& mesh, const TriangleSamples& samples,
                                      FittedDirections directions, float spacing_m,
-                                     const sparse::Options& options, float tolerance, int threads);
+                                     const sparse::Options& options, float tolerance, int threads,
+                                     const IsEnough& is_enough);
 
 /// The same to all samples, without anchors by which no vertex differs from zero. `patches` know
 /// the views of the vertices.

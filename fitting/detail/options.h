@@ -22,7 +22,7 @@ struct Options {
   /// diagonal; who knows the camera gives what a pixel covers.
   std::optional<float> texel_mm{};
   /// While views arrive it is the vertices.
-  OffsetPlaces offsets = OffsetPlaces::vertex;
+  OffsetPlaces offsets = OffsetPlaces::automatic;
   /// Distance of anchors, texels, > 0.
   double anchor_px = 6;
 

@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -191,6 +192,61 @@ TEST(Anchors, LevelsAddUp) {
   }
 }
 
+/// Patches with RBFs besides that base.
+sparse::LightFieldModel bumps(std::size_t count) {
+  sparse::LightFieldModel models = slopes(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    sparse::PatchModel patch = models.patch(i);
+    patch.rbf_count = i % 7;
+    for (std::size_t rbf = 0; rbf < patch.rbf_count; ++rbf) {
+      patch.atom[rbf] = static_cast<std::uint16_t>((11 * i + 43 * rbf) % sparse::atoms().size());
+      patch.coefficient[patch.base_terms + rbf] = patch.coefficient[rbf % sparse::kLinearBase];
+    }
+    models.store(i, patch);
+  }
+  return models;
+}
+
+// Eight directions and more at once, from all sides: what is asked for one after another, but for
+// rounding: of coefficients below 1 a few 1e-6; on the rim one by one leaves a height of up to
+// sqrt(1e-7) = 3e-4 where there is none, times sqrt(3) on two levels.
+TEST(Anchors, AreAskedForManyDirectionsAtOnce) {
+  const core::Mesh mesh = render::testing::torus_knot(0.2f, 96, 12);
+  const AnchorLevel coarse{detail::scatter_anchors(mesh, 0.05f), 0.05f};
+  const AnchorLevel fine{detail::scatter_anchors(mesh, 0.02f), 0.02f};
+  constexpr std::size_t count = 24;
+  std::array<std::array<float, count>, 3> w{}, said{};
+  const Eigen::Vector3f place(0.2f, 0.3f, 0.5f);
+  for (const AskedDirection asked : {AskedDirection::same, AskedDirection::mirrored}) {
+    const AnchoredOffsets anchors(mesh, {coarse, fine}, asked,
+                                  bumps(coarse.vertices.size() + fine.vertices.size()));
+    for (std::size_t triangle = 0; triangle < mesh.triangles.size(); triangle += 5) {
+      std::array<Eigen::Vector3f, count> directions;
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto turn = static_cast<float>(triangle + 7 * i);
+        directions[i] =
+            Eigen::Vector3f(std::sin(turn), std::cos(2.0f * turn), std::sin(3.0f * turn))
+                .normalized();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          w[axis][i] = directions[i][static_cast<Eigen::Index>(axis)];
+          said[axis][i] = 1.0f;
+        }
+      }
+      anchors.add(triangle, place, {w[0].data(), w[1].data(), w[2].data(), count},
+                  {said[0].data(), said[1].data(), said[2].data()});
+      for (std::size_t i = 0; i < count; ++i) {
+        const Eigen::Vector3f n = core::normal_on(mesh, triangle, place);
+        const bool on_rim = std::ranges::any_of(anchors.blends(triangle), [&](const auto& blend) {
+          return anchors.uv_at(blend.anchor, n, directions[i]).norm() > 0.9999f;
+        });
+        const Eigen::Vector3f one = anchors.colour(triangle, place, directions[i]);
+        const Eigen::Vector3f of_many(said[0][i] - 1.0f, said[1][i] - 1.0f, said[2][i] - 1.0f);
+        EXPECT_LT((of_many - one).norm(), on_rim ? 1.2e-3f : 1e-5f) << triangle << " " << i;
+      }
+    }
+  }
+}
+
 // How colours change with the direction is what the surface does, known in closed form, at the
 // middles of triangles and in the directions of the views: .005 of its squares are missed.
 TEST(Anchors, SayHowTheSurfaceChanges) {
@@ -246,7 +302,7 @@ TEST(Anchors, ThreadsDoNotChangeABit) {
 // 40 texels of 1.3 mm are wider than the 20 mm between vertices: fewer models.
 TEST(Anchors, TakeFewerBytesThanVertices) {
   const Photographs& views = glossy_sphere();
-  auto plain = make_fitter("detail", views.mesh(), {{"texel-mm", "1.3"}});
+  auto plain = make_fitter("detail", views.mesh(), {{"texel-mm", "1.3"}, {"offsets", "vertex"}});
   views.show(first(16), *plain);
   plain->finish();
   const auto anchored = finished(views, "40");
