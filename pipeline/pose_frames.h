@@ -11,7 +11,8 @@
 namespace sheen::pipeline {
 
 /// Poses every chosen frame, without fitting: with a `hold_out` those that a fit leaves out. Throws
-/// core::Error (bad_input) when none gets a pose.
+/// core::Error (bad_input) when none gets a pose, or when the board's ids are not those of the
+/// print.
 std::vector<PosedFrame> pose_frames(const capture::Session& session, const FrameChoice& choice,
                                     ProgressSink& sink);
 

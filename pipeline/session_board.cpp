@@ -3,6 +3,7 @@
 
 #include "capture/pose/board_tags.h"
 #include "core/diagnostics/error.h"
+#include "pipeline/evidence/tag_evidence.h"
 #include "pipeline/thinned.h"
 
 namespace sheen::pipeline {
@@ -23,13 +24,16 @@ std::optional<capture::BoardRefinement> refine_session_board(const capture::Sess
   const capture::Board board = capture::read_board(*session.board);
   capture::BoardTagFinder finder(board, session.camera);
   const auto frames = capture::open_frames(session, start, end);
+  TagEvidence tags(board, session.camera);
   Thinned<std::vector<capture::TagDetection>> views(kMostBoardViews);
   for (int i = 0; const auto frame = frames->next(); ++i) {
     sink.progress({"refining the board", i + 1});
+    tags.look_at(*frame);
     if (!views.is_due()) continue;
     finder.look_at(*frame);
     views.add(finder.find());
   }
+  tags.refuse_shifted(*session.board);
   return capture::refine_board(board, session.camera, views.items(), lens);
 }
 

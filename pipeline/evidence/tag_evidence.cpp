@@ -2,6 +2,7 @@
 #include "pipeline/evidence/tag_evidence.h"
 
 #include "capture/pose/board_tags.h"
+#include "core/diagnostics/error.h"
 
 #include <fmt/format.h>
 
@@ -46,6 +47,10 @@ std::vector<std::vector<capture::TagDetection>> TagEvidence::tags() const {
 
 std::optional<capture::IdFault> TagEvidence::fault() const {
   return capture::shifted_ids(board_, camera_, tags());
+}
+
+void TagEvidence::refuse_shifted(const std::filesystem::path& board) const {
+  if (const auto found = fault()) throw core::bad_input(board, found->fault, found->remedy);
 }
 
 std::vector<Finding> TagEvidence::findings(bool is_elsewhere) const {

@@ -10,6 +10,7 @@
 
 #include <opencv2/core/mat.hpp>
 
+#include <filesystem>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,9 @@ class TagEvidence {
 
   /// The board's ids are shifted: every pose is some tags off.
   [[nodiscard]] std::optional<capture::IdFault> fault() const;
+
+  /// Throws core::Error (bad_input) that names the board's file if they are.
+  void refuse_shifted(const std::filesystem::path& board) const;
 
   /// Tags that lie elsewhere than the board says, and such as it does not hold where they are more
   /// than those that it does, or where the object `is_elsewhere` than it says.

@@ -118,6 +118,12 @@ TEST_F(Input, ABoardWhoseIdsAreShiftedIsRefusedWithTheNumber) {
   write_file(session_ / "board.yaml", shifted + std::string(rest, text.cend()));
   expect_refused(replay(), "board.yaml", "1 too high");
   EXPECT_FALSE(fs::exists(model_));
+  const std::string before = read_file(session_ / "session.json");
+  expect_refused(run_sheen({"register", session_, "--quiet"}), "board.yaml", "1 too high");
+  expect_refused(run_sheen({"mesh", session_, "--force", "--quiet"}), "board.yaml", "1 too high");
+  expect_refused(run_sheen({"survey", session_, "--quiet"}), "board.yaml", "1 too high");
+  EXPECT_EQ(read_file(session_ / "session.json"), before);
+  EXPECT_FALSE(fs::exists(session_ / "board.surveyed.yaml"));
 }
 
 TEST_F(Input, PosesInAnotherUnitAreRefusedByReplayAndEvaluate) {
