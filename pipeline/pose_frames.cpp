@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/pose_frames.h"
 
-#include "core/diagnostics/error.h"
 #include "pipeline/check_seen.h"
 #include "pipeline/evidence/tag_evidence.h"
 #include "pipeline/hold_out.h"
