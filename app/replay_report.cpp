@@ -12,7 +12,7 @@ namespace sheen::app {
 namespace {
 
 // The order of the pipeline; a stage that never ran is reported as zero.
-constexpr const char* kStages[] = {"decode", "pose", "rectify", "visibility",
+constexpr const char* kStages[] = {"decode", "pose", "correct", "visibility",
                                    "sample", "fit",  "update"};
 
 std::size_t peak_rss_bytes() {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/observation_replay.h"
 
-#include "pipeline/row_rectifier.h"
+#include "pipeline/frame_corrections.h"
 
 namespace sheen::pipeline {
 
@@ -12,14 +12,14 @@ void replay_observations(const capture::Session& session, const core::Mesh& mesh
   if (views.empty()) return;
   const auto frames =
       capture::open_frames(session, views.front().frame_index, views.back().frame_index + 1);
-  RowRectifier rectifier(session, &mesh, 1);
+  FrameCorrections corrections(session, &mesh, 1);
   auto view = views.begin();
   while (view != views.end()) {
     const auto read = frames->next();
     if (!read) break;
     if (read->index != view->frame_index) continue;
     const capture::Frame frame =
-        rectifier.rectify(*read, view->tracked.camera_from_board, view->tracked.readout_motion);
+        corrections.correct(*read, view->tracked.camera_from_board, view->tracked.readout_motion);
     const core::CameraModel& camera = session.camera_of(frame.index);
     observer.see(camera, view->camera_from_object);
     core::SampleBatch& samples = observer.sample(frame.image);

@@ -7,8 +7,8 @@ namespace sheen::pipeline {
 
 PoseStage::PoseStage(std::unique_ptr<capture::FrameSource> frames,
                      std::unique_ptr<capture::PoseEstimator> poses,
-                     std::optional<RowRectifier> rectifier)
-    : frames_(std::move(frames)), poses_(std::move(poses)), rectifier_(std::move(rectifier)) {}
+                     std::optional<FrameCorrections> corrections)
+    : frames_(std::move(frames)), poses_(std::move(poses)), corrections_(std::move(corrections)) {}
 
 std::optional<TrackedFrame> PoseStage::next(
     const std::function<bool(const capture::Frame&)>& is_wanted) {
@@ -25,10 +25,10 @@ std::optional<TrackedFrame> PoseStage::next(
     tracked.pose = poses_->estimate(tracked.frame);
   }
   const auto* pose = std::get_if<capture::FramePose>(&tracked.pose);
-  if (rectifier_ && pose != nullptr && !pose->readout_motion.isZero()) {
-    const auto timing = tracked.times.measure("rectify");
+  if (corrections_ && pose != nullptr) {
+    const auto timing = tracked.times.measure("correct");
     tracked.frame =
-        rectifier_->rectify(tracked.frame, pose->camera_from_board, pose->readout_motion);
+        corrections_->correct(tracked.frame, pose->camera_from_board, pose->readout_motion);
   }
   return tracked;
 }

@@ -4,7 +4,7 @@
 #include "capture/pose/pose_estimator.h"
 #include "capture/source/frame_source.h"
 #include "core/diagnostics/stage_timer.h"
-#include "pipeline/row_rectifier.h"
+#include "pipeline/frame_corrections.h"
 
 #include <functional>
 #include <memory>
@@ -12,21 +12,21 @@
 
 namespace sheen::pipeline {
 
-/// An image and where it was taken from, on its way from stage to stage. Whatever the camera's
-/// shutter, the image is that of one pose (RowRectifier).
+/// An image and where it was taken from, on its way from stage to stage. The image is
+/// that of one pose and, where the session needs it, of one light (FrameCorrections).
 struct TrackedFrame {
   capture::Frame frame;
   capture::PoseResult pose = capture::PoseRejection::no_tags;
   core::StageTimes times;
 };
 
-/// First stage: image -> pose, and the image of that pose.
+/// First stage: image -> pose, and the image corrected by it.
 class PoseStage {
  public:
-  /// Without a rectifier images stay as they are: where only their poses are of interest.
+  /// Without corrections images stay as they are: where only their poses are of interest.
   PoseStage(std::unique_ptr<capture::FrameSource> frames,
             std::unique_ptr<capture::PoseEstimator> poses,
-            std::optional<RowRectifier> rectifier = std::nullopt);
+            std::optional<FrameCorrections> corrections = std::nullopt);
 
   /// The next frame; nothing at the end of the recording. Frames that `is_wanted` (may be empty)
   /// does not want are passed over without a pose.
@@ -41,7 +41,7 @@ class PoseStage {
  private:
   std::unique_ptr<capture::FrameSource> frames_;
   std::unique_ptr<capture::PoseEstimator> poses_;
-  std::optional<RowRectifier> rectifier_;
+  std::optional<FrameCorrections> corrections_;
 };
 
 }  // namespace sheen::pipeline

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "pipeline/posed_views.h"
 
-#include "pipeline/row_rectifier.h"
+#include "pipeline/frame_corrections.h"
 
 namespace sheen::pipeline {
 
@@ -11,13 +11,13 @@ void for_each_view(const capture::Session& session, const core::Mesh* mesh,
                                             const Eigen::Isometry3d& camera_from_object)>& visit) {
   if (views.empty()) return;
   const auto frames = capture::open_frames(session, views.front().index, views.back().index + 1);
-  RowRectifier rectifier(session, mesh, 1);
+  FrameCorrections corrections(session, mesh, 1);
   auto view = views.begin();
   while (view != views.end()) {
     const auto frame = frames->next();
     if (!frame) break;
     if (frame->index != view->index) continue;
-    visit(rectifier.rectify(*frame, view->camera_from_board, view->readout_motion),
+    visit(corrections.correct(*frame, view->camera_from_board, view->readout_motion),
           view->camera_from_board * session.board_from_object);
     ++view;
   }

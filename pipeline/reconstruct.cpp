@@ -129,8 +129,8 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
   frame_count = frames->frame_count();
   if (!is_live) check_stamps(session, options.frames, frame_count);
   poses.emplace(std::move(frames), pose_estimator(),
-                RowRectifier(session, &object_mesh, options.threads));
-  evidence.emplace(session, object_mesh, mesh.positions.size(),
+                FrameCorrections(session, &object_mesh, options.threads));
+  evidence.emplace(session, object_mesh, mesh,
                    board ? board->board : tag_board(session, options.frames.pose_source));
   stage.emplace(FitStage::Parts{
       .session = session,
@@ -165,7 +165,7 @@ core::Mesh Reconstruction::Impl::read_mesh(ProgressSink& sink) {
 std::optional<MeshRefinement> Reconstruction::Impl::refine_mesh(ProgressSink& sink) const {
   if (!options.refine_mesh || is_live) return std::nullopt;
   PoseStage stills(capture::open_frames(session, options.frames.start, options.frames.end),
-                   pose_estimator(), RowRectifier(session, &object_mesh, options.threads));
+                   pose_estimator(), FrameCorrections(session, &object_mesh, options.threads));
   return refine_mesh_heights(session, object_mesh, options.frames, stills, options.threads, sink);
 }
 

@@ -4,7 +4,9 @@
 #include "fitting/model_file/model_file.h"
 #include "fitting/model_file/model_part.h"
 #include "fitting/patch_light_field.h"
+#include "pipeline/light/session_light.h"
 #include "pipeline/reconstruct.h"
+#include "pipeline/session_readout.h"
 #include "python/bindings.h"
 
 #include <pybind11/functional.h>
@@ -143,8 +145,11 @@ Model reconstruct(const capture::Session& session, const std::optional<std::stri
   settings.threads = threads;
   PythonSink sink(std::move(progress));
   const py::gil_scoped_release others_may_run;
+  capture::Session completed = session;
+  pipeline::complete_readout(completed, settings.frames, sink);
+  pipeline::complete_light(completed, settings.frames, sink);
   auto fitted = std::make_shared<pipeline::Reconstruction>(
-      pipeline::reconstruct({.session = session}, settings, sink));
+      pipeline::reconstruct({.session = std::move(completed)}, settings, sink));
   const core::Mesh& mesh = fitted->mesh();
   const fitting::LightField& light_field = fitted->light_field();
   return {fitted, &mesh, &light_field, fitted->frames().seen, fitted->frames()};

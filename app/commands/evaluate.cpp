@@ -10,6 +10,7 @@
 #include "evaluation/views/contact_sheet.h"
 #include "evaluation/views/evaluate_views.h"
 #include "fitting/model_file/model_file.h"
+#include "pipeline/light/session_light.h"
 #include "pipeline/pose_frames.h"
 #include "pipeline/session_mesh.h"
 #include "pipeline/session_readout.h"
@@ -94,6 +95,7 @@ void run_evaluate(const EvaluateOptions& options, const CommandContext& context)
   TerminalSink sink(context);
   core::Mesh mesh = pipeline::read_session_mesh(session, sink);
   pipeline::complete_readout(session, options.frames, sink);
+  pipeline::complete_light(session, options.frames, sink);
   const auto views = pipeline::pose_frames(session, options.frames, sink);
   pipeline::SessionScene::check(session, mesh, options.frames.pose_source, views, sink);
   pipeline::face_cameras(mesh, session, poses_of(views), sink);

@@ -5,6 +5,7 @@
 #include "core/mesh/bounds.h"
 #include "evaluation/views/evaluate_views.h"
 #include "fitting/patch_light_field.h"
+#include "pipeline/light/session_light.h"
 #include "pipeline/pose_frames.h"
 #include "pipeline/session_readout.h"
 #include "render/renderer.h"
@@ -80,6 +81,7 @@ ConversionCost::OnViews cost_on_views(render::Context& gl, const fitting::Model&
   TerminalSink sink(context);
   session.take_offset(model.mesh.offset);
   pipeline::complete_readout(session, frames, sink);
+  pipeline::complete_light(session, frames, sink);
   const auto views = pipeline::pose_frames(session, frames, sink);
   int done = 0;
   const auto summaries = evaluation::evaluate_views(

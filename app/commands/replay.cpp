@@ -17,6 +17,7 @@
 #include "evaluation/views/evaluate_views.h"
 #include "fitting/model_file/model_file.h"
 #include "fitting/patch_light_field.h"
+#include "pipeline/light/session_light.h"
 #include "pipeline/posed_views.h"
 #include "pipeline/reconstruct.h"
 #include "pipeline/session_readout.h"
@@ -240,13 +241,15 @@ WalkAnswer complete_session(const ReplayOptions& options, capture::Session& sess
   session = open_walk(options.session, options.walk, frames, sink, answer);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
   pipeline::complete_readout(session, frames, sink);
-  if (!session.mesh.empty() || !session.board) return answer;
-  const MeshAnswer mesh = add_measured_mesh(session, frames, sink, context);
-  const core::CameraModel camera = session.camera;  // with what was measured of it
-  session = capture::open_session(session.folder);
-  session.camera = camera;
-  answer.document["mesh"] = mesh.document;
-  answer.text += mesh.text;
+  if (session.mesh.empty() && session.board) {
+    const MeshAnswer mesh = add_measured_mesh(session, frames, sink, context);
+    const core::CameraModel camera = session.camera;  // with what was measured of it
+    session = capture::open_session(session.folder);
+    session.camera = camera;
+    answer.document["mesh"] = mesh.document;
+    answer.text += mesh.text;
+  }
+  pipeline::complete_light(session, frames, sink);
   return answer;
 }
 

@@ -7,7 +7,9 @@
 #include "app/terminal_sink.h"
 #include "core/files/folder_lock.h"
 #include "core/files/staged_output.h"
+#include "pipeline/light/session_light.h"
 #include "pipeline/reconstruct.h"
+#include "pipeline/session_readout.h"
 
 #include <memory>
 
@@ -27,9 +29,11 @@ struct ResumeOptions {
 /// Writes the state of the session alone.
 void observe(const ResumeOptions& options, const fitting::StateHeader& like,
              const std::filesystem::path& path, const CommandContext& context) {
-  const capture::Session session = capture::open_session(options.session);
+  capture::Session session = capture::open_session(options.session);
   for (const std::string& warning : session.warnings) context.note("note: " + warning);
   TerminalSink sink(context);
+  pipeline::complete_readout(session, options.frames, sink);
+  pipeline::complete_light(session, options.frames, sink);
   SessionState state(session);
   pipeline::Reconstruction fitted(
       {.session = session, .on_samples = state.listener()},

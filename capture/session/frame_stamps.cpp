@@ -50,6 +50,8 @@ class StampedSource : public FrameSource {
     return frame;
   }
 
+  bool skip() override { return source_->skip(); }
+
   [[nodiscard]] std::optional<int> frame_count() const override { return source_->frame_count(); }
 
   [[nodiscard]] SourceReport report() const override { return source_->report(); }

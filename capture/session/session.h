@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,6 +39,9 @@ struct Session {
   /// Places the mesh, less `mesh_offset`, on the board; as read, the mesh as its file has it.
   Eigen::Isometry3d board_from_object = Eigen::Isometry3d::Identity();
   Eigen::Vector3d mesh_offset = Eigen::Vector3d::Zero();
+  /// Usual light of the paper around each tag of the board, RGB, linear: frames are brought to it.
+  /// Empty, as when read: they stay as they are (pipeline/light/session_light.h).
+  std::map<int, Eigen::Vector3d> paper_light;
   std::vector<std::string> warnings;  ///< unknown keys, one line each
 
   /// Lets `board_from_object` place a mesh that lacks `offset` (core::Mesh::offset).

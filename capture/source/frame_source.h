@@ -23,6 +23,9 @@ class FrameSource {
   /// The next image, or nothing at the end. Throws core::Error when the source is broken.
   virtual std::optional<Frame> next() = 0;
 
+  /// Passes over the next image, without decoding it where the source can; false at the end.
+  virtual bool skip() { return next().has_value(); }
+
   /// Number of frames when the source knows it.
   [[nodiscard]] virtual std::optional<int> frame_count() const = 0;
 

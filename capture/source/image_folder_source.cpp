@@ -93,6 +93,13 @@ class ImageFolderSource : public FrameSource {
     return frame ? frame : read();
   }
 
+  bool skip() override {
+    if (std::exchange(waiting_, std::nullopt)) return true;
+    if (next_ >= end_) return false;
+    ++next_;
+    return true;
+  }
+
   [[nodiscard]] std::optional<int> frame_count() const override { return end_ - range_.start; }
 
   [[nodiscard]] SourceReport report() const override { return {0, reader_.notes()}; }

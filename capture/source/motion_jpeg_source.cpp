@@ -41,6 +41,11 @@ class MotionJpegSource : public FrameSource {
     return frame ? std::move(frame) : decode();
   }
 
+  bool skip() override {
+    if (std::exchange(waiting_, std::nullopt)) return true;
+    return (!range_.end || read_ < *range_.end) && advance_or_refuse();
+  }
+
   [[nodiscard]] std::optional<int> frame_count() const override {
     if (!promised() && !range_.end) return std::nullopt;
     constexpr int most = std::numeric_limits<int>::max();
@@ -65,14 +70,18 @@ class MotionJpegSource : public FrameSource {
     return true;
   }
 
+  /// False at the end; throws where that comes too early.
+  bool advance_or_refuse() {
+    if (advance()) return true;
+    if (is_short(promised(), read_, reader_.slot() - first_slot_)) {
+      throw early_end(path_, read_, promised());
+    }
+    return false;
+  }
+
   std::optional<Frame> decode() {
     while (!range_.end || read_ < *range_.end) {
-      if (!advance()) {
-        if (is_short(promised(), read_, reader_.slot() - first_slot_)) {
-          throw early_end(path_, read_, promised());
-        }
-        return std::nullopt;
-      }
+      if (!advance_or_refuse()) return std::nullopt;
       const auto jpeg = reader_.read();
       const auto stated = jpeg_size(jpeg);
       if (stated) check_image_size(path_, *stated, size_);

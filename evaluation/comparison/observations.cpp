@@ -7,6 +7,7 @@
 #include "pipeline/evidence/capture_evidence.h"
 #include "pipeline/frame_loop.h"
 #include "pipeline/hold_out.h"
+#include "pipeline/light/session_light.h"
 #include "pipeline/observation_replay.h"
 #include "pipeline/pose_frames.h"
 #include "pipeline/session_mesh.h"
@@ -29,12 +30,12 @@ void observe_frames(const pipeline::FrameChoice& choice, int threads, pipeline::
   const pipeline::HoldOut hold_out{observations.has_own_held_out ? 0 : choice.hold_out};
   pipeline::PoseStage poses(capture::open_frames(session, choice.start, choice.end),
                             pipeline::make_pose_estimator(session, choice.pose_source, choice.gate),
-                            pipeline::RowRectifier(session, &observations.mesh, threads));
+                            pipeline::FrameCorrections(session, &observations.mesh, threads));
   pipeline::ViewObserver observer = make_observer(observations.mesh, threads);
   pipeline::FrameStatistics frames;
   std::size_t samples = 0;
   pipeline::SessionScene scene(session, observations.mesh, choice.pose_source, sink);
-  pipeline::CaptureEvidence evidence(session, observations.mesh, observations.mesh.positions.size(),
+  pipeline::CaptureEvidence evidence(session, observations.mesh, observations.mesh,
                                      pipeline::tag_board(session, choice.pose_source));
   pipeline::for_each_frame(poses, threads > 1, [&](pipeline::TrackedFrame& tracked) {
     const auto posed = frames.count(tracked);
@@ -77,6 +78,7 @@ Observations observe_session(const std::filesystem::path& folder,
   Observations observations;
   observations.session = capture::open_session(folder);
   pipeline::complete_readout(observations.session, choice, sink);
+  pipeline::complete_light(observations.session, choice, sink);
   observations.mesh = pipeline::read_session_mesh(observations.session, sink);
   pipeline::face_cameras(observations.mesh, observations.session,
                          pipeline::probe_poses(observations.session, choice), sink);

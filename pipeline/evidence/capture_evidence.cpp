@@ -3,6 +3,8 @@
 
 #include "core/mesh/bounds.h"
 #include "core/numerics/median.h"
+#include "pipeline/light/recording_light.h"
+#include "pipeline/light/session_light.h"
 
 #include <fmt/format.h>
 
@@ -14,6 +16,7 @@ namespace sheen::pipeline {
 namespace {
 
 constexpr std::size_t kMostGrains = 16, kGrainSpacing = 4;
+constexpr std::size_t kMostPapers = 32, kPaperSpacing = 4;
 constexpr int kLeastGrainStep_px = 3, kGrainPixels = 6000;
 // Chosen on bench/stress with seed 1 and the recordings named in docs/stability-sessions.md.
 constexpr double kGrainy = 10;  // grey levels, above which outlines and colours tell nothing sure
@@ -24,19 +27,33 @@ void append(std::vector<Finding> more, std::vector<Finding>& findings) {
   for (Finding& finding : more) findings.push_back(std::move(finding));
 }
 
+/// Corners of the object's bounding box.
+std::vector<Eigen::Vector3d> box_in_board(const capture::Session& session, const core::Mesh& mesh) {
+  const Eigen::AlignedBox3d box = core::bounds_of(mesh).cast<double>();
+  std::vector<Eigen::Vector3d> corners;
+  for (int corner = 0; corner < 8; ++corner) {
+    corners.push_back(session.board_from_object *
+                      box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
+  }
+  return corners;
+}
+
 }  // namespace
 
 CaptureEvidence::CaptureEvidence(const capture::Session& session, const core::Mesh& mesh,
-                                 std::size_t patch_count,
+                                 const core::Mesh& patches,
                                  const std::optional<capture::Board>& board)
     : board_from_object_(session.board_from_object),
       middle_(core::bounds_of(mesh).center().cast<double>()),
       outline_(mesh),
-      light_(patch_count),
+      print_(patches),
+      light_(patches.positions.size()),
       depth_(session.depth ? session.depth->unit_m : 1),
+      paper_(paper_reader(session)),
+      paper_lights_(kMostPapers, kPaperSpacing),
       grains_(kMostGrains, kGrainSpacing) {
   if (board) {
-    corners_.emplace(*board, session.camera);
+    corners_.emplace(*board, session.camera, box_in_board(session, mesh));
     tags_.emplace(*board, session.camera);
   }
 }
@@ -50,8 +67,13 @@ void CaptureEvidence::look_at(const capture::Frame& frame,
   }
   if (tags_) tags_->look_at(frame);
   outline_.look_at(frame.index, frame.image, observation.camera, observation.camera_from_object);
+  print_.look_at(frame.index, frame.image, observation.view, observation.camera,
+                 observation.camera_from_object);
   depth_.look_at(observation);
   light_.look_at(frame.index, observation.samples, observation.view);
+  if (paper_ && paper_lights_.is_due()) {
+    paper_lights_.add(paper_->read(frame.image, camera_from_board));
+  }
   if (grains_.is_due()) measure_grain(frame.image);
   const Eigen::Vector3d eye = observation.camera_from_object.inverse().translation() - middle_;
   const Eigen::Vector3d on_board = board_from_object_.linear() * eye;
@@ -88,6 +110,16 @@ double CaptureEvidence::grain() const {
   return grains.empty() ? 0 : core::upper_median(grains);
 }
 
+/// Of exposure and white balance; where paper is seen that knows better than the object.
+std::vector<Finding> CaptureEvidence::drifts(const LightEvidence::Verdict& verdict) const {
+  const auto paper = solve_light(paper_lights_.items());
+  if (!paper) return LightEvidence::drifts(verdict);
+  if (!clearly_changes(*paper)) return {};
+  return {{"exposure-drift", describe(paper->change) +
+                                 ", by the paper around the tags: lock both in the camera; sheen "
+                                 "replay of the session levels them"}};
+}
+
 /// Corners do not fit, the object is not where poses and mesh put it, or nowhere in the images.
 bool CaptureEvidence::are_poses_doubtful(const std::vector<Finding>& corners,
                                          const std::vector<Finding>& misplaced) const {
@@ -115,12 +147,16 @@ std::vector<Finding> CaptureEvidence::faults() const {
   }
   if (auto unit = depth_.finding()) faults.push_back(std::move(*unit));
   append(corners, faults);
+  const std::vector<Finding> weak = corners_ ? corners_->weaknesses() : std::vector<Finding>{};
+  append(weak, faults);
   const LightEvidence::Verdict light = light_.verdict();
-  append(LightEvidence::drifts(light), faults);
+  append(drifts(light), faults);
   if (!corners.empty() || noise > kGrainy) return faults;
 
   // Outlines and colours are off, too, where poses are: the cause has been named.
-  append(misplaced.empty() ? LightEvidence::contradictions(light) : misplaced, faults);
+  std::vector<Finding> elsewhere = misplaced;
+  if (elsewhere.empty() && weak.empty()) elsewhere = print_.findings();
+  append(elsewhere.empty() ? LightEvidence::contradictions(light) : std::move(elsewhere), faults);
   return faults;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "capture/pose/paper_light.h"
 #include "capture/session/session.h"
 #include "core/mesh/mesh.h"
 #include "core/samples/observation.h"
@@ -9,6 +10,7 @@
 #include "pipeline/evidence/finding.h"
 #include "pipeline/evidence/light_evidence.h"
 #include "pipeline/evidence/outline_evidence.h"
+#include "pipeline/evidence/print_evidence.h"
 #include "pipeline/evidence/tag_evidence.h"
 #include "pipeline/thinned.h"
 
@@ -20,15 +22,15 @@
 namespace sheen::pipeline {
 
 /// What a recording's own data show to be wrong with it, by the trace that each fault leaves:
-/// corners of tags, outlines, brightness, depths, grain, and from where the object was seen. Looks
-/// at every fourth frame, and in long recordings at fewer. The result does not depend on what is
-/// fitted.
+/// corners of tags, outlines, print, brightness, depths, grain, and from where the object was seen.
+/// Looks at every fourth frame, and in long recordings at fewer. The result does not depend on what
+/// is fitted.
 class CaptureEvidence {
  public:
-  /// `mesh` must outlive this; `patch_count` is that of the samples. `board` is that of the tags
-  /// that give the poses, if they do.
-  CaptureEvidence(const capture::Session& session, const core::Mesh& mesh, std::size_t patch_count,
-                  const std::optional<capture::Board>& board);
+  /// `mesh` is the object's, `patches` the one whose vertices give the samples; both must outlive
+  /// this. `board` is that of the tags that give the poses, if they do.
+  CaptureEvidence(const capture::Session& session, const core::Mesh& mesh,
+                  const core::Mesh& patches, const std::optional<capture::Board>& board);
 
   /// A posed frame that is fitted, and what it shows of the surface.
   void look_at(const capture::Frame& frame, const Eigen::Isometry3d& camera_from_board,
@@ -48,6 +50,7 @@ class CaptureEvidence {
  private:
   void measure_grain(const cv::Mat& image);
   [[nodiscard]] double grain() const;
+  [[nodiscard]] std::vector<Finding> drifts(const LightEvidence::Verdict& verdict) const;
   [[nodiscard]] std::optional<Finding> coverage() const;
   [[nodiscard]] bool are_poses_doubtful(const std::vector<Finding>& corners,
                                         const std::vector<Finding>& misplaced) const;
@@ -57,8 +60,11 @@ class CaptureEvidence {
   std::optional<CornerEvidence> corners_;
   std::optional<TagEvidence> tags_;
   OutlineEvidence outline_;
+  PrintEvidence print_;
   LightEvidence light_;
   DepthEvidence depth_;
+  std::optional<capture::PaperReader> paper_;
+  Thinned<std::vector<capture::PaperLight>> paper_lights_;
   Thinned<double> grains_;  ///< standard deviation of the noise, grey levels
   std::optional<Eigen::Isometry3d> last_pose_;
   int last_index_ = 0;

@@ -3,6 +3,7 @@
 
 #include "capture/pose/board_tags.h"
 #include "core/alignment/projection_derivative.h"
+#include "core/numerics/median.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
@@ -10,17 +11,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace sheen::pipeline {
 namespace {
 
 constexpr std::size_t kMostCornerViews = 12, kCornerSpacing = 4;
-constexpr std::size_t kFewestCorners = 12;
+constexpr std::size_t kFewestCorners = 12, kPoseCorners = 4;
 constexpr int kFewestNumbers = 600;  // below it a pattern of three unknowns fits noise
 // Chosen on bench/stress with seed 1 and the recordings named in docs/stability-sessions.md: what a
 // pattern must explain, RMS of the corners; less does no harm that is seen.
 constexpr double kLens_px = 0.5, kBend_px = 0.3, kShutter_px = 0.3, kPrincipal_px = 0.5;
 constexpr double kPatternShare = 0.35;
+// Tags all round the object have .2 to .5, eight to one side of it 3. Sharp edges are 1.5 px wide,
+// those of a quick walk with a video camera 2.1, a blur of 1 px makes 2.75.
+constexpr double kLongLever = 1.2, kBlurred_px = 2.4;
 
 constexpr double kStep = 1e-4;  // of a numerical derivative
 constexpr int kCameraUnknowns = 5;
@@ -35,14 +40,27 @@ core::CameraModel with_change(const core::CameraModel& camera, int unknown) {
   return core::CameraModel(changed);
 }
 
+/// Of the values that are known.
+std::optional<double> median_of(const std::vector<CornerEvidence::View>& views,
+                                std::optional<double> CornerEvidence::View::*value) {
+  std::vector<double> known;
+  for (const CornerEvidence::View& view : views) {
+    if (view.*value) known.push_back(*(view.*value));
+  }
+  if (known.empty()) return std::nullopt;
+  return core::upper_median(known);
+}
+
 }  // namespace
 
-CornerEvidence::CornerEvidence(const capture::Board& board, const core::CameraModel& camera)
+CornerEvidence::CornerEvidence(const capture::Board& board, const core::CameraModel& camera,
+                               std::vector<Eigen::Vector3d> object_in_board)
     : board_(board),
       camera_(camera),
       changed_{with_change(camera, 0), with_change(camera, 1), with_change(camera, 2),
                with_change(camera, 3), with_change(camera, 4)},
       middle_(Eigen::Vector3d::Zero()),
+      object_in_board_(std::move(object_in_board)),
       tracker_(board, camera, capture::BoardTagFinder(board, camera).family()),
       views_(kMostCornerViews, kCornerSpacing) {
   Eigen::AlignedBox3d box;
@@ -60,10 +78,11 @@ void CornerEvidence::look_at(const capture::Frame& frame,
   View view;
   const auto pose = tracker_.track(capture::grey_of(frame), camera_from_board);
   const auto& corners = tracker_.corners();
-  if (!pose || corners.size() < kFewestCorners) {
+  if (!pose) {
     views_.add(view);
     return;
   }
+  view.blur_px = pose->blur_px;
 
   // How each corner moves with the pose and with each fault.
   const auto rows = static_cast<Eigen::Index>(2 * corners.size());
@@ -97,6 +116,14 @@ void CornerEvidence::look_at(const capture::Frame& frame,
     }
   }
 
+  if (corners.size() >= kPoseCorners) {
+    view.leverage = leverage_of(by_pose, pose->camera_from_board);
+  }
+  if (corners.size() < kFewestCorners) {
+    views_.add(view);
+    return;
+  }
+
   // Take out what a pose can take up.
   const Eigen::HouseholderQR<Eigen::MatrixXd> qr(by_pose);
   const auto off_pose = [&](const Eigen::MatrixXd& columns) -> Eigen::MatrixXd {
@@ -110,6 +137,51 @@ void CornerEvidence::look_at(const capture::Frame& frame,
   view.squares_px2 = left.squaredNorm();
   view.numbers = static_cast<int>(rows - 6);
   views_.add(view);
+}
+
+/// By the covariance of the pose, one pixel squared for each coordinate of a corner.
+double CornerEvidence::leverage_of(const Eigen::MatrixXd& by_pose,
+                                   const Eigen::Isometry3d& camera_from_board) const {
+  const Eigen::Matrix<double, 6, 6> information = by_pose.transpose() * by_pose;
+  const auto solver = information.ldlt();
+  double squares = 0;
+  int points = 0;
+  for (const Eigen::Vector3d& in_board : object_in_board_) {
+    const Eigen::Vector3d in_camera = camera_from_board * in_board;
+    const auto seen = core::project_with_derivative(camera_, in_camera);
+    if (!seen) continue;
+    const auto by_twist = core::pixel_by_twist(seen->pixel_by_point, in_camera);
+    squares += (by_twist * solver.solve(by_twist.transpose())).trace();
+    ++points;
+  }
+  return points > 0 ? std::sqrt(squares / points) : 0;
+}
+
+std::optional<double> CornerEvidence::leverage() const {
+  return median_of(views_.items(), &View::leverage);
+}
+
+std::optional<double> CornerEvidence::blur_px() const {
+  return median_of(views_.items(), &View::blur_px);
+}
+
+std::vector<Finding> CornerEvidence::weaknesses() const {
+  std::vector<Finding> findings;
+  if (const auto lever = leverage(); lever && *lever > kLongLever) {
+    findings.push_back(
+        {"tags-aside",
+         fmt::format("the tags that are seen lie to one side of the object: what their corners are "
+                     "off moves it in the image by {:.0f} times as much; put tags all round it, "
+                     "or keep more of them in the images",
+                     *lever)});
+  }
+  if (const auto blur = blur_px(); blur && *blur > kBlurred_px) {
+    findings.push_back(
+        {"blur", fmt::format("the images are blurred: the tags' edges are {:.1f} px wide, sharp "
+                             "ones 1.5; focus on the object, move slowly, or give more light",
+                             *blur)});
+  }
+  return findings;
 }
 
 CornerEvidence::Pattern CornerEvidence::fit(int first, int count) const {

@@ -4,6 +4,7 @@
 #include "capture/pose/board.h"
 #include "capture/pose/trajectory.h"
 #include "capture/session/depth_images.h"
+#include "capture/session/frame_stamps.h"
 #include "capture/session/session.h"
 #include "capture/synthetic/motion_jpeg_file.h"
 #include "capture/synthetic/torus_knot.h"
@@ -243,6 +244,39 @@ TEST_F(SyntheticSession, MotionJpegComesBack) {
     EXPECT_GT(cv::PSNR(image, drawn(i)), 42) << "image " << i;
   }
   EXPECT_FALSE(reader.read(image));
+}
+
+// Whatever is passed over, the next frame is the one that reading everything gives; at the end
+// there is nothing to pass over. Of a video with stamps, without, and of pictures.
+TEST_F(SyntheticSession, SkippedFramesAreThoseThatWouldBeRead) {
+  SyntheticOptions options = small();
+  options.frames = 6;
+  options.held_out = 6;
+  write_synthetic_session(folder_ / "s", options, {});
+  Session stamped = open_session(folder_ / "s");
+  std::ofstream stamps(folder_ / "stamps.csv");
+  stamps << stamps_heading();
+  for (int i = 0; i < options.frames; ++i) stamps << stamp_line(i, 40'000 * i, 0);
+  stamps.close();
+  stamped.stamps = folder_ / "stamps.csv";
+  for (const Session& session :
+       {open_session(folder_ / "s"), stamped, open_session(folder_ / "s" / "held_out")}) {
+    for (int skipped = 0; skipped < options.frames; ++skipped) {
+      const auto all = open_frames(session), some = open_frames(session);
+      for (int i = 0; i < skipped; ++i) {
+        ASSERT_TRUE(all->next());
+        ASSERT_TRUE(some->skip());
+      }
+      const auto expected = all->next(), frame = some->next();
+      ASSERT_TRUE(frame);
+      EXPECT_EQ(frame->index, skipped);
+      EXPECT_EQ(frame->time_s, expected->time_s);
+      EXPECT_EQ(cv::norm(frame->image, expected->image, cv::NORM_INF), 0);
+      for (int i = skipped + 1; i < options.frames; ++i) EXPECT_TRUE(some->skip());
+      EXPECT_FALSE(some->skip());
+      EXPECT_FALSE(some->next());
+    }
+  }
 }
 
 }  // namespace

@@ -246,7 +246,7 @@ TEST_F(SyntheticShutter, FramesAreRectifiedAgainAsAtFirst) {
   session.camera = core::CameraModel(intrinsics);
   const core::Mesh mesh = core::read_mesh(session.mesh);
   PoseStage poses(capture::open_frames(session, 0, 5), make_pose_estimator(session, {}, {}),
-                  RowRectifier(session, &mesh, 2));
+                  FrameCorrections(session, &mesh, 2));
   FrameStatistics frames;
   int rectified = 0;  // a frame that is searched may be posed by its corners, without motion
   std::vector<cv::Mat> images;
