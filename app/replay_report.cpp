@@ -185,6 +185,7 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
           {"board_refinement", board_json(report.board)},
           {"mesh_refinement", mesh_json(report.mesh)},
           {"exposure", exposure_json(frames.gains)},
+          {"levelled_by_paper", report.is_levelled},
           {"readout_ms", 1e3 * report.readout_s},
           {"reprojection_px", frames.reprojection_px.empty()
                                   ? nlohmann::ordered_json(nullptr)

@@ -24,8 +24,9 @@ struct ReplayReport {
   const pipeline::FrameStatistics& frames;
   const core::StageTimer& timer;
   fitting::FitStatistics fit;
-  double readout_s = 0;  ///< of the camera: told or measured (Intrinsics::readout_s)
-  double finish_ms = 0;  ///< CPU time of what the fit put off to the end
+  bool is_levelled = false;  ///< frames were brought to one exposure by the paper of the board
+  double readout_s = 0;      ///< of the camera: told or measured (Intrinsics::readout_s)
+  double finish_ms = 0;      ///< CPU time of what the fit put off to the end
   std::string representation;
   std::size_t patches = 0;
   std::size_t patches_observed = 0;

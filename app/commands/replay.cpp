@@ -95,6 +95,7 @@ ReplayReport describe(const ReplayOptions& options, const Reconstruction& fitted
   ReplayReport report{.frames = fitted.frames(),
                       .timer = fitted.times(),
                       .fit = fit,
+                      .is_levelled = !fitted.session().paper_light.empty(),
                       .readout_s = fitted.session().camera.intrinsics().readout_s,
                       .finish_ms = fitted.finish_cpu_ms(),
                       .representation = ran.reconstruction.representation,

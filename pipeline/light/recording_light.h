@@ -36,8 +36,8 @@ struct RecordingLight {
 /// median gain is 1. No value for fewer than six frames with two tags.
 std::optional<RecordingLight> solve_light(std::span<const std::vector<capture::PaperLight>> frames);
 
-/// Whether frames differ by more than photographs of a steady scene do whose exposure is automatic,
-/// and by clearly more than the tags of a frame do.
+/// Whether frames differ by more than blur makes them seem to, and by clearly more than the tags of
+/// a frame do.
 bool clearly_changes(const RecordingLight& light);
 
 /// "the exposure changes by 1.0 stops over the recording, the white balance, red against blue, by
