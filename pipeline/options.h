@@ -48,8 +48,10 @@ struct ReconstructionOptions {
   double texel_px = 1.5;  ///< of texel patches: longest edge, pixels, > 0
   core::SamplingLimits limits{};
   PhotometricOptions photometric{};
-  core::PatchShare share{};        ///< of the patches: the only ones that are fitted
-  bool refine_mesh = false;        ///< move the mesh's vertices to where the pictures agree
+  core::PatchShare share{};  ///< of the patches: the only ones that are fitted
+  /// Whether to move the mesh's vertices to where the pictures agree, if they do there. Nothing:
+  /// where a texture is fitted to a mesh much coarser than its texels, never while it is recorded.
+  std::optional<bool> refine_mesh{};
   bool refine_board = false;       ///< refine the tags' places before their poses are used
   bool refuse_mismatches = false;  ///< keep frames out that contradict the model
   bool with_mean = false;          ///< fit mean colours to the same samples, to compare with

@@ -27,6 +27,18 @@ namespace {
 
 constexpr const char* kMean = "mean";
 constexpr const char* kVertexPatches = "sparse";
+constexpr const char* kTextured = "detail";
+constexpr std::size_t kFewestRefiningViews = 20;  // of fewer, gloss may pass for a height
+
+/// For work that nobody asked for: how far it has come, and nothing of what it leaves undone.
+class WithoutNotes : public ProgressSink {
+ public:
+  explicit WithoutNotes(ProgressSink& sink) : sink_(sink) {}
+  void progress(const StepProgress& step) override { sink_.progress(step); }
+
+ private:
+  ProgressSink& sink_;
+};
 
 /// Refines the board where it is asked for and the poses come from its tags.
 std::optional<capture::BoardRefinement> refine_board(const capture::Session& session,
@@ -53,10 +65,11 @@ struct Reconstruction::Impl {
   Impl(ReconstructionInputs inputs, const ReconstructionOptions& wanted, ProgressSink& sink);
 
   core::Mesh read_mesh(ProgressSink& sink);
-  std::optional<MeshRefinement> refine_mesh(ProgressSink& sink) const;
+  bool may_refine_mesh();
+  std::optional<MeshRefinement> refine_mesh(ProgressSink& sink);
   core::Mesh patch_mesh();
   void look_at_sides(const TrackedFrame& tracked, ProgressSink& sink);
-  double texel_size_m() const;
+  double texel_size_m(const core::Mesh& surface) const;
   void choose_texels();
   std::unique_ptr<capture::PoseEstimator> pose_estimator() const;
   std::unique_ptr<fitting::Fitter> make_fitter(const std::string& name,
@@ -73,6 +86,7 @@ struct Reconstruction::Impl {
   std::optional<capture::BoardRefinement> board;
   core::Mesh object_mesh;
   SessionScene scene;
+  std::optional<double> texel_m;  ///< for the mesh as given, where that was asked for
   std::optional<MeshRefinement> refinement;
   core::Mesh mesh;
   std::vector<Eigen::Isometry3d> first_poses;  ///< of a live recording: which side do they see
@@ -161,12 +175,29 @@ core::Mesh Reconstruction::Impl::read_mesh(ProgressSink& sink) {
   return read;
 }
 
+/// Where nobody said: only where print between the vertices could show that they lie wrong.
+bool Reconstruction::Impl::may_refine_mesh() {
+  constexpr double coarse = 4;  // texels for each vertex; a coarse mesh has 10 to 30, temple 3
+  if (is_live || options.refine_mesh) return !is_live && *options.refine_mesh;
+  const bool has_texture =
+      options.representation == kTextured &&
+      (options.patches == Patches::automatic || options.patches == Patches::detail);
+  if (!has_texture) return false;
+  texel_m = texel_size_m(object_mesh);
+  return texels_per_vertex(*texel_m, object_mesh) >= coarse;
+}
+
 /// Reads the recording once for it, before the run.
-std::optional<MeshRefinement> Reconstruction::Impl::refine_mesh(ProgressSink& sink) const {
-  if (!options.refine_mesh || is_live) return std::nullopt;
+std::optional<MeshRefinement> Reconstruction::Impl::refine_mesh(ProgressSink& sink) {
+  if (!may_refine_mesh()) return std::nullopt;
+  WithoutNotes unasked(sink);
   PoseStage stills(capture::open_frames(session, options.frames.start, options.frames.end),
                    pose_estimator(), FrameCorrections(session, &object_mesh, options.threads));
-  return refine_mesh_heights(session, object_mesh, options.frames, stills, options.threads, sink);
+  auto refined = refine_mesh_heights(session, object_mesh, options.frames, stills, options.threads,
+                                     options.refine_mesh ? sink : unasked);
+  const bool is_asked = options.refine_mesh.has_value();
+  const bool tells = refined.views + refined.check_views >= kFewestRefiningViews;
+  return is_asked || tells ? std::optional(std::move(refined)) : std::nullopt;
 }
 
 /// Subdivided to the images' resolution when patches are texels.
@@ -194,22 +225,23 @@ void Reconstruction::Impl::look_at_sides(const TrackedFrame& tracked, ProgressSi
 }
 
 /// What a pixel covers, supposing that the object fills the image where that is not known yet.
-double Reconstruction::Impl::texel_size_m() const {
+double Reconstruction::Impl::texel_size_m(const core::Mesh& surface) const {
   const auto footprint_m =
-      is_live ? std::nullopt : pixel_footprint_m(session, mesh, *pose_estimator());
-  const double diagonal_m = static_cast<double>(core::bounds_of(mesh).diagonal().norm());
+      is_live ? std::nullopt : pixel_footprint_m(session, surface, *pose_estimator());
+  const double diagonal_m = static_cast<double>(core::bounds_of(surface).diagonal().norm());
   return footprint_m.value_or(diagonal_m / session.camera.height_px());
 }
 
 void Reconstruction::Impl::choose_texels() {
-  const double texel_m = texel_size_m();
-  if (options.patches == Patches::automatic && !are_finer_than_vertices(texel_m, mesh)) {
+  const bool is_measured = texel_m && !(refinement && refinement->is_accepted);
+  const double size_m = is_measured ? *texel_m : texel_size_m(mesh);
+  if (options.patches == Patches::automatic && !are_finer_than_vertices(size_m, mesh)) {
     options.representation = kVertexPatches;
     options.patches = Patches::vertex;
     return;
   }
   if (options.patches == Patches::automatic) options.patches = Patches::detail;
-  set_texel_size(texel_m, options.fit);
+  set_texel_size(size_m, options.fit);
 }
 
 std::unique_ptr<fitting::Fitter> Reconstruction::Impl::make_fitter(

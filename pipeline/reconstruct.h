@@ -82,7 +82,7 @@ class Reconstruction {
   [[nodiscard]] const core::StageTimer& times() const;
   [[nodiscard]] double finish_cpu_ms() const;  ///< CPU time of what the fit put off to the end
   [[nodiscard]] const std::optional<capture::BoardRefinement>& board_refinement() const;
-  /// Nothing unless options.refine_mesh.
+  /// Nothing where it was not tried (options.refine_mesh).
   [[nodiscard]] const std::optional<MeshRefinement>& mesh_refinement() const;
 
   /// A held-out frame's pose refined against the finished model; with `refine_poses` only.

@@ -33,12 +33,16 @@ bool asks_texel_size(std::string_view representation, const fitting::OptionValue
 
 bool are_finer_than_vertices(double texel_m, const core::Mesh& mesh) {
   constexpr double least_per_vertex = 2;
+  return texels_per_vertex(texel_m, mesh) >= least_per_vertex;
+}
+
+double texels_per_vertex(double texel_m, const core::Mesh& mesh) {
   double area_m2 = 0;
   for (const auto& triangle : mesh.triangles) {
     area_m2 += core::doubled_area(mesh, triangle).norm() / 2;
   }
   const auto vertices = static_cast<double>(mesh.positions.size());
-  return area_m2 >= least_per_vertex * vertices * texel_m * texel_m;
+  return area_m2 / (vertices * texel_m * texel_m);
 }
 
 void set_texel_size(double texel_m, fitting::OptionValues& values) {

@@ -22,6 +22,9 @@ bool asks_texel_size(std::string_view representation, const fitting::OptionValue
 /// Whether texels of this size lie clearly more densely than the vertices.
 bool are_finer_than_vertices(double texel_m, const core::Mesh& mesh);
 
+/// Texels of the surface for each of its vertices.
+double texels_per_vertex(double texel_m, const core::Mesh& mesh);
+
 /// Chooses it.
 void set_texel_size(double texel_m, fitting::OptionValues& values);
 

@@ -34,6 +34,7 @@ struct CompareOptions {
   std::filesystem::path output;
   std::vector<std::string> only;  ///< names of candidates; empty: all
   pipeline::FrameChoice frames;
+  bool refine_mesh = false;
   bool paper = false;       ///< the paper's experiments instead of sessions
   bool billboards = false;  ///< those on billboards instead
   BillboardComparison billboard{};
@@ -96,7 +97,8 @@ Comparison compare_sessions(const CompareOptions& options, const CommandContext&
   for (std::size_t i = 0; i < names.size(); ++i) {
     steps.begin(names[i]);
     const Observations observations =
-        evaluation::observe_session(options.folders[i], options.frames, context.threads, steps);
+        evaluation::observe_session(options.folders[i], options.frames, options.refine_mesh,
+                                    context.threads, steps);
     steps.end();
     comparison.sessions.push_back({.name = names[i],
                                    .folder = options.folders[i].string(),
@@ -217,6 +219,9 @@ void add_compare_command(CommandLine& program, CommandContext& context) {
       .range(2, kLargestHoldOut)
       .type("N")
       .show_default();
+  command.flag("--refine-mesh", options->refine_mesh,
+               "Move the meshes' vertices first as sheen replay does where their print confirms it, "
+               "and compare where the refined meshes are seen");
   add_frame_options(command, options->frames);
   add_common_options(command, context);
   command.action([options, &context] { run_compare(*options, context); });

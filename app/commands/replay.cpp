@@ -80,7 +80,8 @@ void save(const ReplayOptions& options, const Reconstruction& fitted) {
                          fitted.frames().seen);
   }
   if (!options.mesh_output.empty()) {
-    core::write_placed_ply(options.mesh_output, fitted.mesh_refinement()->mesh);
+    const auto& refined = fitted.mesh_refinement();
+    core::write_placed_ply(options.mesh_output, refined ? refined->mesh : fitted.object_mesh());
   }
   if (!options.poses_output.empty()) write_poses(options.poses_output, fitted.frames().posed);
 }

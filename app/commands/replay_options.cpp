@@ -184,20 +184,29 @@ void add_replay_options(Command command, ReplayOptions& options) {
   add_frame_options(command, fit.frames);
   command.flag("--refine-board", fit.refine_board,
                "Refine where the tags lie from the whole recording before posing frames");
-  Option refine_mesh = command.flag(
-      "--refine-mesh", fit.refine_mesh,
-      "Move the mesh's vertices along their normals to where the pictures of its print "
-      "agree; kept as it is unless that shows on views left out of it");
+  Option refine_mesh = command.switch_on(
+      "--refine-mesh", [&fit] { fit.refine_mesh = true; },
+      "Move the mesh's vertices along their normals to where the pictures of its print agree; kept "
+      "as it is unless that shows on views left out of it. Default where a texture is fitted to a "
+      "mesh much coarser than its texels");
+  command
+      .switch_on(
+          "--no-refine-mesh", [&fit] { fit.refine_mesh = false; },
+          "Leave the mesh's vertices where they are")
+      .excludes(refine_mesh);
   command
       .option("--write-mesh", options.mesh_output,
-              "With --refine-mesh: also save the mesh, in the coordinates of the session's (.ply)")
+              "Also save the mesh, refined or not, in the coordinates of the session's (.ply)")
       .check([](const std::string& path) {
         return path.ends_with(".ply") ? std::string() : path + " does not end in .ply";
       })
       .type("FILE.ply");
   command.after_parsing([&options] {
-    if (!options.mesh_output.empty() && !options.reconstruction.refine_mesh) {
-      throw UsageError("--write-mesh needs --refine-mesh, without it the mesh is the session's");
+    if (!options.mesh_output.empty() && options.reconstruction.refine_mesh == false) {
+      throw UsageError("--write-mesh excludes --no-refine-mesh: the mesh is the session's");
+    }
+    if (!options.state_output.empty() && options.reconstruction.refine_mesh == true) {
+      throw UsageError("--refine-mesh excludes --state: states know the session's mesh");
     }
   });
   Option preview = command.flag(
@@ -214,7 +223,6 @@ void add_replay_options(Command command, ReplayOptions& options) {
                   "Also save every view's samples (24 bytes each), for sheen resume, merge, forget")
           .type("FILE");
   preview.excludes(state);
-  refine_mesh.excludes(state);  // states know the session's mesh
   command
       .option(
           "--part", [&fit](const std::string& text) { fit.share = share_from(text); },
@@ -247,7 +255,8 @@ nlohmann::ordered_json to_json(const ReplayOptions& options) {
                    {"refine_poses", fit.photometric.refine_poses},
                    {"pose_error_px", fit.photometric.pose_error_px},
                    {"refine_board", fit.refine_board},
-                   {"refine_mesh", fit.refine_mesh},
+                   {"refine_mesh", fit.refine_mesh ? nlohmann::ordered_json(*fit.refine_mesh)
+                                                   : nlohmann::ordered_json("auto")},
                    {"exposure", fit.photometric.exposure},
                    {"refuse_mismatches", fit.refuse_mismatches},
                    {"texel_px", fit.texel_px}});

@@ -8,6 +8,7 @@
 #include "pipeline/frame_loop.h"
 #include "pipeline/hold_out.h"
 #include "pipeline/light/session_light.h"
+#include "pipeline/mesh_heights.h"
 #include "pipeline/observation_replay.h"
 #include "pipeline/pose_frames.h"
 #include "pipeline/session_mesh.h"
@@ -21,6 +22,19 @@ namespace {
 
 pipeline::ViewObserver make_observer(const core::Mesh& mesh, int threads) {
   return {mesh, core::make_raster_visibility(mesh, threads), {}, threads};
+}
+
+/// Moves the mesh's vertices where its print confirms it, by the frames that are fitted.
+void refine(pipeline::FrameChoice choice, int threads, pipeline::ProgressSink& sink,
+            Observations& observations) {
+  if (observations.has_own_held_out) choice.hold_out = 0;
+  const capture::Session& session = observations.session;
+  pipeline::PoseStage stills(
+      capture::open_frames(session, choice.start, choice.end),
+      pipeline::make_pose_estimator(session, choice.pose_source, choice.gate),
+      pipeline::FrameCorrections(session, &observations.mesh, threads));
+  observations.mesh =
+      pipeline::refine_mesh_heights(session, observations.mesh, choice, stills, threads, sink).mesh;
 }
 
 /// Poses and samples every frame that is not held out; those that are go to the observations, too.
@@ -73,7 +87,7 @@ void check_views_are_held_out(const Observations& observations) {
 }  // namespace
 
 Observations observe_session(const std::filesystem::path& folder,
-                             const pipeline::FrameChoice& choice, int threads,
+                             const pipeline::FrameChoice& choice, bool refine_mesh, int threads,
                              pipeline::ProgressSink& sink) {
   Observations observations;
   observations.session = capture::open_session(folder);
@@ -84,6 +98,7 @@ Observations observe_session(const std::filesystem::path& folder,
                          pipeline::probe_poses(observations.session, choice), sink);
   const auto own_views = folder / "held_out";
   observations.has_own_held_out = std::filesystem::exists(own_views / "session.json");
+  if (refine_mesh) refine(choice, threads, sink, observations);
   observe_frames(choice, threads, sink, observations);
   observations.held_out_session = observations.session;
   if (observations.has_own_held_out) {

@@ -20,7 +20,7 @@ constexpr std::size_t kFewestTags = 2;
 constexpr std::size_t kFewestFrames = 6;
 constexpr int kRounds = 20;
 constexpr double kFine_stops = 0.005;  // differences below it count as squares
-constexpr double kRidge = 1e-9;        // for the factor that tags and frames share
+constexpr double kRidge = 1e-9;        // on gains
 // A blur of 2 px looks like .17 stops. Tags of one photograph from a phone, which treats every part
 // of a picture in its own way, disagree by a fifth of what such photographs differ by; levelling
 // those gains nothing (docs/stability-sessions.md).
@@ -39,7 +39,8 @@ Eigen::Vector3d median_by_channel(std::span<const Eigen::Vector3d> colours) {
 
 /// Solves stops = gain of the frame + light of the tag for the tags' light, one channel, by least
 /// absolute differences (least squares, reweighted): a shadow on some tags of a frame counts for
-/// nothing.
+/// nothing. Of frames that share no tag, directly or by way of others, nothing is known of each
+/// other: the mean gain of either is none.
 std::map<int, double> usual_stops(std::span<const std::vector<capture::PaperLight>> frames,
                                   Eigen::Index channel) {
   // Unknowns: frames first, then tags.
@@ -52,7 +53,8 @@ std::map<int, double> usual_stops(std::span<const std::vector<capture::PaperLigh
 
   Eigen::VectorXd x = Eigen::VectorXd::Zero(unknowns);
   for (int round = 0; round < kRounds; ++round) {
-    Eigen::MatrixXd H = kRidge * Eigen::MatrixXd::Identity(unknowns, unknowns);
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(unknowns, unknowns);
+    H.diagonal().head(static_cast<Eigen::Index>(frames.size())).setConstant(kRidge);
     Eigen::VectorXd g = Eigen::VectorXd::Zero(unknowns);
     for (std::size_t f = 0; f < frames.size(); ++f) {
       for (const capture::PaperLight& light : frames[f]) {

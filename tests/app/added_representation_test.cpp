@@ -406,7 +406,7 @@ TEST_F(AddedRepresentation, IsComparedWithTheOthers) {
   const auto session = folder / "session";
   std::filesystem::copy(sample_session(), session);
   const auto observations =
-      evaluation::observe_session(session, {.end = 12, .hold_out = 4}, 1, sink_);
+      evaluation::observe_session(session, {.end = 12, .hold_out = 4}, false, 1, sink_);
   const auto context = render::make_osmesa_context();
   evaluation::Comparison comparison;
   comparison.sessions.push_back({"session", session, 9, 3, false});

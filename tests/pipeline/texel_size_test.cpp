@@ -35,6 +35,7 @@ TEST(TexelSize, IsFinerThanVerticesFromTwoTexelsPerVertexOn) {
   EXPECT_FALSE(are_finer_than_vertices(0.001, mesh));
   EXPECT_FALSE(are_finer_than_vertices(0.00070, mesh));
   EXPECT_TRUE(are_finer_than_vertices(0.00068, mesh));
+  EXPECT_NEAR(texels_per_vertex(0.0005, mesh), 4 * 1600 / 1681.0, 1e-4);
 }
 
 TEST(TexelSize, NoSurfaceHasNoTexture) {
