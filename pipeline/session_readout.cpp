@@ -3,6 +3,7 @@
 
 #include "capture/pose/rolling_shutter.h"
 #include "core/alignment/projection_derivative.h"
+#include "pipeline/evidence/corner_evidence.h"
 #include "pipeline/session_parts.h"
 
 #include <Eigen/QR>
@@ -136,6 +137,25 @@ Regression look_at_stretches(const capture::Session& session, const FrameChoice&
   return regression;
 }
 
+/// A camera that moves steadily bends the tags as a wrong principal point or lens does, whose
+/// patterns of the corners tell them apart.
+bool is_rather_the_lens(const capture::Session& session, const FrameChoice& choice,
+                        const capture::Board& board, int count) {
+  CornerEvidence corners(board, session.camera, {});
+  const auto estimator = make_pose_estimator(session, choice.pose_source, choice.gate);
+  const auto frames = capture::open_frames(session, choice.start, choice.start + count);
+  std::optional<Eigen::Isometry3d> last;
+  while (const auto frame = frames->next()) {
+    const auto result = estimator->estimate(*frame);
+    const auto* const pose = std::get_if<capture::FramePose>(&result);
+    if (pose != nullptr) corners.look_at(*frame, pose->camera_from_board, last);
+    last = pose != nullptr ? std::optional(pose->camera_from_board) : std::nullopt;
+  }
+  const double shutter = corners.fit(CornerEvidence::kShutter, 1).share;
+  return corners.fit(CornerEvidence::kPrincipal, 2).share > shutter ||
+         corners.fit(CornerEvidence::kLens, 3).share > shutter;
+}
+
 }  // namespace
 
 std::optional<Readout> measure_readout(const capture::Session& session, const FrameChoice& choice) {
@@ -153,6 +173,7 @@ std::optional<Readout> measure_readout(const capture::Session& session, const Fr
   if (!some) return std::nullopt;
   const double upright = 2 - some->readout_s / none->readout_s;  // 1: nothing leans
   if (!(upright > kLeastUpright && upright <= 1.2)) return std::nullopt;
+  if (is_rather_the_lens(session, choice, *board, count)) return std::nullopt;
   return Readout{none->readout_s / upright, some->sigma_s / upright};
 }
 

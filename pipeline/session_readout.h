@@ -18,7 +18,8 @@ struct Readout {
 /// Measures how long a recording's camera takes to read a frame, from three short stretches of its
 /// first 240 frames: how tags are bent in a frame against how the camera moves between its
 /// neighbours. No value for a global shutter, for recordings that do not tell (a camera at rest,
-/// pictures without times, poses from a file) and where the motion explains too little.
+/// pictures without times, poses from a file), where the motion explains too little, and where
+/// another lens explains the tags' corners better.
 std::optional<Readout> measure_readout(const capture::Session& session, const FrameChoice& choice);
 
 /// Measures it where the camera file does not say and puts it into the session's camera, with a

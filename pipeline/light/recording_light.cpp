@@ -21,20 +21,25 @@ constexpr std::size_t kFewestFrames = 6;
 constexpr int kRounds = 20;
 constexpr double kFine_stops = 0.005;  // differences below it count as squares
 constexpr double kRidge = 1e-9;        // on gains
+constexpr double kSaturated = 0.97;    // light, above which a code tells a least value only
 // A blur of 2 px looks like .17 stops. Tags of one photograph from a phone, which treats every part
 // of a picture in its own way, disagree by a fifth of what such photographs differ by; levelling
 // those gains nothing (docs/stability-sessions.md).
 constexpr double kClearChange_stops = 0.25;
 constexpr double kClearOfDisagreement = 10;
 
-Eigen::Vector3d median_by_channel(std::span<const Eigen::Vector3d> colours) {
-  Eigen::Vector3d medians;
+/// By channel: half of the frames have more, half less; of two in the middle the geometric mean, or
+/// every second recording would end brighter than it is.
+Eigen::Vector3d middle_gain(const Gains& gains) {
+  Eigen::Vector3d middle;
   for (Eigen::Index channel = 0; channel < 3; ++channel) {
     std::vector<double> values;
-    for (const Eigen::Vector3d& colour : colours) values.push_back(colour[channel]);
-    medians[channel] = core::upper_median(values);
+    for (const Eigen::Vector3d& gain : gains) values.push_back(gain[channel]);
+    std::ranges::sort(values);
+    const std::size_t last = values.size() - 1;
+    middle[channel] = std::sqrt(values[last / 2] * values[(last + 1) / 2]);
   }
-  return medians;
+  return middle;
 }
 
 /// Solves stops = gain of the frame + light of the tag for the tags' light, one channel, by least
@@ -46,7 +51,9 @@ std::map<int, double> usual_stops(std::span<const std::vector<capture::PaperLigh
   // Unknowns: frames first, then tags.
   std::map<int, Eigen::Index> column;
   for (const auto& lights : frames) {
-    for (const capture::PaperLight& light : lights) column.emplace(light.tag_id, 0);
+    for (const capture::PaperLight& light : lights) {
+      if (light.rgb[channel] < kSaturated) column.emplace(light.tag_id, 0);
+    }
   }
   auto unknowns = static_cast<Eigen::Index>(frames.size());
   for (auto& [tag, at] : column) at = unknowns++;
@@ -58,6 +65,7 @@ std::map<int, double> usual_stops(std::span<const std::vector<capture::PaperLigh
     Eigen::VectorXd g = Eigen::VectorXd::Zero(unknowns);
     for (std::size_t f = 0; f < frames.size(); ++f) {
       for (const capture::PaperLight& light : frames[f]) {
+        if (light.rgb[channel] >= kSaturated) continue;
         const auto i = static_cast<Eigen::Index>(f), j = column.at(light.tag_id);
         const double stops = std::log2(light.rgb[channel]);
         const double off = std::abs(stops - x[i] - x[j]);
@@ -77,12 +85,15 @@ std::map<int, double> usual_stops(std::span<const std::vector<capture::PaperLigh
   return usual;
 }
 
+/// Of the tags that are seen in all channels.
 PaperByTag usual_light(std::span<const std::vector<capture::PaperLight>> frames) {
+  const std::array by_channel{usual_stops(frames, 0), usual_stops(frames, 1),
+                              usual_stops(frames, 2)};
   PaperByTag usual;
-  for (Eigen::Index channel = 0; channel < 3; ++channel) {
-    for (const auto& [tag, stops] : usual_stops(frames, channel)) {
-      usual[tag][channel] = std::exp2(stops);
-    }
+  for (const auto& [tag, stops] : by_channel[0]) {
+    if (!by_channel[1].contains(tag) || !by_channel[2].contains(tag)) continue;
+    usual[tag] = {std::exp2(stops), std::exp2(by_channel[1].at(tag)),
+                  std::exp2(by_channel[2].at(tag))};
   }
   return usual;
 }
@@ -112,43 +123,51 @@ double disagreement_of(std::span<const std::vector<capture::PaperLight>> frames,
   for (std::size_t f = 0; f < frames.size(); ++f) {
     std::vector<double> off;
     for (const capture::PaperLight& light : frames[f]) {
-      const double expected = usual.at(light.tag_id).y() * gains[f].y();
-      off.push_back(std::abs(std::log2(light.rgb.y() / expected)));
+      const auto known = usual.find(light.tag_id);
+      if (known == usual.end() || light.rgb.y() >= kSaturated) continue;
+      off.push_back(std::abs(std::log2(light.rgb.y() / (known->second.y() * gains[f].y()))));
     }
-    by_frame.push_back(core::upper_median(off));
+    if (!off.empty()) by_frame.push_back(core::upper_median(off));
   }
-  return core::upper_median(by_frame);
+  return by_frame.empty() ? 0 : core::upper_median(by_frame);
 }
 
 }  // namespace
 
 std::optional<Eigen::Vector3d> gain_of(std::span<const capture::PaperLight> lights,
                                        const std::map<int, Eigen::Vector3d>& usual) {
-  std::array<std::vector<double>, 3> ratios;
-  for (const capture::PaperLight& light : lights) {
-    const auto known = usual.find(light.tag_id);
-    if (known == usual.end()) continue;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto channel = static_cast<Eigen::Index>(c);
-      ratios[c].push_back(light.rgb[channel] / known->second[channel]);
+  Eigen::Vector3d gain;
+  for (Eigen::Index channel = 0; channel < 3; ++channel) {
+    std::vector<double> ratios, least;
+    for (const capture::PaperLight& light : lights) {
+      const auto known = usual.find(light.tag_id);
+      if (known == usual.end()) continue;
+      const double ratio = light.rgb[channel] / known->second[channel];
+      (light.rgb[channel] < kSaturated ? ratios : least).push_back(ratio);
     }
+    if (ratios.size() + least.size() < kFewestTags) return std::nullopt;
+    // Saturated paper tells a least gain, which is better than none.
+    const bool tells = ratios.size() >= kFewestTags;
+    gain[channel] = tells ? core::upper_median(ratios) : *std::ranges::max_element(least);
   }
-  if (ratios[0].size() < kFewestTags) return std::nullopt;
-  return Eigen::Vector3d(core::upper_median(ratios[0]), core::upper_median(ratios[1]),
-                         core::upper_median(ratios[2]));
+  return gain;
 }
 
 std::optional<RecordingLight> solve_light(
     std::span<const std::vector<capture::PaperLight>> frames) {
-  std::vector<std::vector<capture::PaperLight>> telling(frames.begin(), frames.end());
-  std::erase_if(telling, [](const auto& lights) { return lights.size() < kFewestTags; });
-  if (telling.size() < kFewestFrames) return std::nullopt;
-  PaperByTag usual = usual_light(telling);
+  PaperByTag usual = usual_light(frames);
+  std::vector<std::vector<capture::PaperLight>> telling;
   Gains gains;
-  for (const auto& lights : telling) gains.push_back(*gain_of(lights, usual));
+  for (const auto& lights : frames) {
+    const auto gain = gain_of(lights, usual);
+    if (!gain) continue;
+    telling.push_back(lights);
+    gains.push_back(*gain);
+  }
+  if (telling.size() < kFewestFrames) return std::nullopt;
 
   // Of all that explain the same, the one whose middle frame is as it is.
-  const Eigen::Vector3d middle = median_by_channel(gains);
+  const Eigen::Vector3d middle = middle_gain(gains);
   for (auto& [tag, rgb] : usual) rgb = rgb.cwiseProduct(middle);
   for (Eigen::Vector3d& gain : gains) gain = gain.cwiseQuotient(middle);
   return RecordingLight{usual, change_of(gains), disagreement_of(telling, gains, usual)};

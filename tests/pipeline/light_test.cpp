@@ -112,7 +112,27 @@ TEST(RecordingLight, GainsComeBack) {
   EXPECT_NEAR(light->change.exposure_stops, 1.65 / 3, 0.02);
   EXPECT_NEAR(light->change.balance_stops, 1.1, 0.02);
   EXPECT_TRUE(clearly_changes(*light));
-  EXPECT_NEAR(gain_of(seen[6], light->usual)->x(), 1, 1e-3);  // the upper median of twelve
+  // Half way between the two in the middle of twelve: half a step.
+  EXPECT_NEAR(gain_of(seen[6], light->usual)->x(), std::exp2(0.05), 5e-3);
+}
+
+// Paper that is overexposed in half of the frames: the tags that are not tell the gain, and where
+// all are, it is at least what the darkest of them would take to be: 1 / .5.
+TEST(RecordingLight, SaturatedPaperTellsNothingButALeastGain) {
+  const auto frame = [](double gain) {
+    std::vector<PaperLight> lights;
+    for (const auto& [tag, paper] : {std::pair{1, 0.8}, {2, 0.75}, {3, 0.8}, {4, 0.5}, {5, 0.5}}) {
+      lights.push_back({tag, Eigen::Vector3d::Constant(std::min(1.0, gain * paper))});
+    }
+    return lights;
+  };
+  std::vector<std::vector<PaperLight>> seen(7, frame(1));
+  seen.resize(12, frame(1.5));
+  const auto light = solve_light(seen);
+  ASSERT_TRUE(light);
+  EXPECT_NEAR(light->change.most_stops, std::log2(1.5), 1e-3);
+  EXPECT_NEAR(gain_of(frame(1.5), light->usual)->x(), 1.5, 1e-3);
+  EXPECT_NEAR(gain_of(frame(3), light->usual)->x(), 2, 1e-2);
 }
 
 // Two halves of a walk without a tag in common, each with tags of other paper: that is no change.
