@@ -96,9 +96,8 @@ Comparison compare_sessions(const CompareOptions& options, const CommandContext&
   Steps steps(context, names.size(), candidates.size());
   for (std::size_t i = 0; i < names.size(); ++i) {
     steps.begin(names[i]);
-    const Observations observations =
-        evaluation::observe_session(options.folders[i], options.frames, options.refine_mesh,
-                                    context.threads, steps);
+    const Observations observations = evaluation::observe_session(
+        options.folders[i], options.frames, options.refine_mesh, context.threads, steps);
     steps.end();
     comparison.sessions.push_back({.name = names[i],
                                    .folder = options.folders[i].string(),
@@ -219,9 +218,10 @@ void add_compare_command(CommandLine& program, CommandContext& context) {
       .range(2, kLargestHoldOut)
       .type("N")
       .show_default();
-  command.flag("--refine-mesh", options->refine_mesh,
-               "Move the meshes' vertices first as sheen replay does where their print confirms it, "
-               "and compare where the refined meshes are seen");
+  command.flag(
+      "--refine-mesh", options->refine_mesh,
+      "Move the meshes' vertices first as sheen replay does where their print confirms it, "
+      "and compare where the refined meshes are seen");
   add_frame_options(command, options->frames);
   add_common_options(command, context);
   command.action([options, &context] { run_compare(*options, context); });

@@ -27,10 +27,10 @@ struct Observations {
   bool has_own_held_out = false;                ///< they come from the session's folder held_out/
 };
 
-/// Poses every frame and samples those that are fitted, on the session's mesh, with `refine_mesh` as
-/// its print says (pipeline/mesh_heights.h). Held out are the session's own held_out/
-/// views where it has them, else the frames that choice.hold_out names. Throws core::Error
-/// (bad_input) when no frame is posed, the object is not seen or no view is left to measure on.
+/// Poses every frame and samples those that are fitted, on the session's mesh, with `refine_mesh`
+/// as its print says (pipeline/mesh_heights.h). Held out are the session's own held_out/ views
+/// where it has them, else the frames that choice.hold_out names. Throws core::Error (bad_input)
+/// when no frame is posed, the object is not seen or no view is left to measure on.
 Observations observe_session(const std::filesystem::path& folder,
                              const pipeline::FrameChoice& choice, bool refine_mesh, int threads,
                              pipeline::ProgressSink& sink);

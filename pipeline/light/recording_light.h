@@ -14,8 +14,8 @@
 namespace sheen::pipeline {
 
 /// What a frame's exposure and white balance multiply light with, against the usual light of the
-/// paper: RGB, > 0, the median over the tags that both know and that are not saturated; where all are,
-/// the most of the gains that they tell at least. No value for fewer than two of them.
+/// paper: RGB, > 0, the median over the tags that both know and that are not saturated; where all
+/// are, the most of the gains that they tell at least. No value for fewer than two of them.
 std::optional<Eigen::Vector3d> gain_of(std::span<const capture::PaperLight> lights,
                                        const std::map<int, Eigen::Vector3d>& usual);
 
