@@ -49,6 +49,7 @@ CaptureEvidence::CaptureEvidence(const capture::Session& session, const core::Me
       print_(patches),
       light_(patches.positions.size()),
       depth_(session.depth ? session.depth->unit_m : 1),
+      is_levelled_(!session.paper_light.empty()),
       paper_(paper_reader(session)),
       paper_lights_(kMostPapers, kPaperSpacing),
       grains_(kMostGrains, kGrainSpacing) {
@@ -114,7 +115,7 @@ double CaptureEvidence::grain() const {
 std::vector<Finding> CaptureEvidence::drifts(const LightEvidence::Verdict& verdict) const {
   const auto paper = solve_light(paper_lights_.items());
   if (!paper) return LightEvidence::drifts(verdict);
-  if (!clearly_changes(*paper)) return {};
+  if (is_levelled_ || !clearly_changes(*paper)) return {};
   return {{"exposure-drift", describe(paper->change) +
                                  ", by the paper around the tags: lock both in the camera; sheen "
                                  "replay of the session levels them"}};

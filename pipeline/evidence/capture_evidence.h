@@ -63,6 +63,7 @@ class CaptureEvidence {
   PrintEvidence print_;
   LightEvidence light_;
   DepthEvidence depth_;
+  bool is_levelled_;  ///< by the paper, which has been noted
   std::optional<capture::PaperReader> paper_;
   Thinned<std::vector<capture::PaperLight>> paper_lights_;
   Thinned<double> grains_;  ///< standard deviation of the noise, grey levels

@@ -5,6 +5,8 @@
 #include "pipeline/light/recording_light.h"
 #include "pipeline/light/session_light.h"
 
+#include <opencv2/core.hpp>
+
 #include <cstdint>
 
 namespace sheen::pipeline {

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ranges>
 
 namespace sheen::pipeline {
 namespace {
@@ -100,18 +99,18 @@ PaperByTag usual_light(std::span<const std::vector<capture::PaperLight>> frames)
 
 LightChange change_of(const Gains& gains) {
   const auto range = [&](const auto& value_of) {
-    const auto [least, most] = std::ranges::minmax(gains | std::views::transform(value_of));
+    std::vector<double> values;
+    for (const Eigen::Vector3d& gain : gains)
+      values.push_back(value_of(gain.array().log2().eval()));
+    const auto [least, most] = std::ranges::minmax(values);
     return most - least;
   };
-  const auto stops = [](const Eigen::Vector3d& gain) {
-    return gain.array().log2().matrix().eval();
-  };
   LightChange change;
-  change.exposure_stops = range([&](const auto& gain) { return stops(gain).mean(); });
-  change.balance_stops = range([&](const auto& gain) { return std::log2(gain[0] / gain[2]); });
+  change.exposure_stops = range([](const Eigen::Array3d& stops) { return stops.mean(); });
+  change.balance_stops = range([](const Eigen::Array3d& stops) { return stops[0] - stops[2]; });
   for (Eigen::Index channel = 0; channel < 3; ++channel) {
-    change.most_stops = std::max(change.most_stops,
-                                 range([&](const auto& gain) { return std::log2(gain[channel]); }));
+    change.most_stops = std::max(
+        change.most_stops, range([&](const Eigen::Array3d& stops) { return stops[channel]; }));
   }
   return change;
 }
