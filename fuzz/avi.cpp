@@ -4,7 +4,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   return sheen::fuzz::read_input(bytes, size, "frames.avi", [](const std::filesystem::path& path) {
-    const auto source = sheen::capture::open_motion_jpeg(path, {160, 120}, {0, 20}, 30.0);
+    const auto source = sheen::capture::open_motion_jpeg(path, {160, 120}, {0, 20}, 30.0, 1.0);
     while (source && source->next()) {
     }
   });

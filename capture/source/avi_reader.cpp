@@ -92,6 +92,7 @@ bool AviReader::read_headers() {
     if (chunk->name == letters("movi")) return video_stream_ >= 0 && !header_.codec.empty();
     if (chunk->name == letters("strh")) note_stream_header(*chunk);
     if (chunk->name == letters("strf")) note_stream_format(*chunk);
+    if (chunk->name == letters("vprp")) note_video_properties(*chunk);
   }
   return false;
 }
@@ -126,6 +127,19 @@ void AviReader::note_stream_format(const Chunk& chunk) {
   header_.size = {static_cast<int>(width), static_cast<int>(height)};
   header_.codec.clear();
   for (int i = 0; i < 4; ++i) header_.codec += letter(u32(start.data() + 16), i);
+}
+
+// OpenDML 1.02: the aspect of the whole frame, height first, and its size in pixels.
+void AviReader::note_video_properties(const Chunk& chunk) {
+  constexpr double widest = 8;  // beyond it, it is no statement about a camera's pixels
+  if (video_stream_ < 0 || video_stream_ != streams_ - 1) return;
+  const auto start = read_start(chunk, 32);
+  if (start.empty()) return;
+  const std::uint32_t aspect = u32(start.data() + 20);
+  const double frame_aspect = static_cast<double>(aspect >> 16) / (aspect & 0xffff);
+  const double pixels_across = static_cast<double>(u32(start.data() + 24)) / u32(start.data() + 28);
+  const double pixel_aspect = frame_aspect / pixels_across;
+  if (pixel_aspect >= 1 / widest && pixel_aspect <= widest) header_.pixel_aspect = pixel_aspect;
 }
 
 bool AviReader::is_image(std::uint32_t name) const {

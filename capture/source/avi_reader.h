@@ -18,6 +18,7 @@ struct AviHeader {
   std::string codec;  ///< four letters, such as MJPG
   ImageSize size;
   double fps = 0;             ///< > 0
+  double pixel_aspect = 1;    ///< width of a pixel over its height
   std::optional<int> frames;  ///< nothing where the recording was never closed
 };
 
@@ -59,6 +60,7 @@ class AviReader {
   std::vector<std::uint8_t> read_start(const Chunk& chunk, std::size_t bytes) const;
   void note_stream_header(const Chunk& chunk);
   void note_stream_format(const Chunk& chunk);
+  void note_video_properties(const Chunk& chunk);
   [[nodiscard]] bool is_image(std::uint32_t name) const;
 
   FileHandle file_;

@@ -4,11 +4,13 @@
 #include "capture/source/avi_reader.h"
 #include "capture/source/image_check.h"
 #include "capture/source/jpeg_decoder.h"
+#include "capture/source/pixel_aspect.h"
 #include "capture/source/recording_end.h"
 #include "capture/source/stated_rate.h"
 
 #include <algorithm>
 #include <limits>
+#include <string>
 #include <utility>
 
 namespace sheen::capture {
@@ -25,9 +27,16 @@ bool has_whole_images(AviReader& reader) {
 class MotionJpegSource : public FrameSource {
  public:
   MotionJpegSource(std::filesystem::path path, AviReader reader, const ImageSize& size,
-                   const FrameRange& range, std::optional<double> fps)
-      : path_(std::move(path)), reader_(std::move(reader)), size_(size), range_(range), rate_(fps) {
+                   const FrameRange& range, std::optional<double> fps,
+                   std::optional<double> focal_ratio)
+      : path_(std::move(path)),
+        reader_(std::move(reader)),
+        size_(size),
+        range_(range),
+        rate_(fps),
+        focal_ratio_(focal_ratio) {
     check_range(path_, range_, promised());
+    refuse_shown_size(path_, reader_.header().size, size_, reader_.header().pixel_aspect);
     // Decode the first wanted frame now: faults show before long work starts.
     while (read_ < range_.start) {
       if (!advance()) throw early_end(path_, read_, promised());
@@ -54,9 +63,11 @@ class MotionJpegSource : public FrameSource {
 
   [[nodiscard]] SourceReport report() const override {
     SourceReport report{damaged_, {}};
-    if (const auto disagreement = rate_.disagreement()) {
-      report.notes.push_back(path_.string() + ": " + *disagreement);
-    }
+    const std::string aspect =
+        focal_ratio_ ? aspect_doubt(reader_.header().pixel_aspect, *focal_ratio_) : "";
+    if (!aspect.empty()) report.notes.push_back(aspect);
+    if (auto disagreement = rate_.disagreement()) report.notes.push_back(*disagreement);
+    for (std::string& note : report.notes) note = path_.string() + ": " + note;
     return report;
   }
 
@@ -105,6 +116,7 @@ class MotionJpegSource : public FrameSource {
   ImageSize size_;
   FrameRange range_;
   StatedRate rate_;
+  std::optional<double> focal_ratio_;  ///< fy / fx of the camera
   int damaged_ = 0;
   int read_ = 0;  ///< images gone past, damaged ones included
   int first_slot_ = 0;
@@ -115,11 +127,13 @@ class MotionJpegSource : public FrameSource {
 
 std::unique_ptr<FrameSource> open_motion_jpeg(const std::filesystem::path& path,
                                               const ImageSize& size, const FrameRange& range,
-                                              std::optional<double> fps) {
+                                              std::optional<double> fps,
+                                              std::optional<double> focal_ratio) {
   auto reader = AviReader::open(path);
   if (!reader || reader->header().codec != "MJPG" || !has_whole_images(*reader)) return nullptr;
   reader = AviReader::open(path);  // again from its first image
-  return std::make_unique<MotionJpegSource>(path, std::move(*reader), size, range, fps);
+  return std::make_unique<MotionJpegSource>(path, std::move(*reader), size, range, fps,
+                                            focal_ratio);
 }
 
 }  // namespace sheen::capture

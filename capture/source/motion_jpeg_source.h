@@ -15,6 +15,7 @@ namespace sheen::capture {
 /// the file is of another kind. Otherwise as `open_video`.
 std::unique_ptr<FrameSource> open_motion_jpeg(const std::filesystem::path& path,
                                               const ImageSize& size, const FrameRange& range,
-                                              std::optional<double> fps);
+                                              std::optional<double> fps,
+                                              std::optional<double> focal_ratio);
 
 }  // namespace sheen::capture

@@ -157,7 +157,7 @@ std::unique_ptr<FrameSource> open_video(const std::filesystem::path& path, const
                                         const FrameRange& range, std::optional<double> fps,
                                         std::optional<double> focal_ratio) {
   check_is_file(path);
-  if (auto source = open_motion_jpeg(path, size, range, fps)) return source;
+  if (auto source = open_motion_jpeg(path, size, range, fps, focal_ratio)) return source;
   return read_ahead(
       std::make_unique<VideoSource>(path, VideoDecoder(path, size), size, range, fps, focal_ratio));
 }

@@ -231,31 +231,39 @@ TEST(VideoTurns, StoredPixelsAreTakenUnlessTheCameraIsForTurnedOnes) {
   }
 }
 
-// Stored 64 x 48 of pixels 4 : 3, shown 85 x 48. Of the stored pixels fy / fx is 4 / 3.
+// Stored 64 x 48 of pixels 4 : 3, shown 85 x 48. Of the stored pixels fy / fx is 4 / 3. AVI files
+// of JPEG images have a reader of their own.
 TEST(VideoPixels, ThatAreNotSquareAreToldToTheCameraFile) {
   const TemporaryFolder folder;
-  VideoSpec spec = numbered(2);
-  spec.pixel_aspect = 4.0 / 3;
-  write_video(folder / "wide.mkv", spec);
-  EXPECT_NEAR(video_pixel_aspect(folder / "wide.mkv"), 4.0 / 3, 1e-3);
-  const auto notes = [&](std::optional<double> focal_ratio) {
-    const auto source = open_video(folder / "wide.mkv", kVideoSize, {}, std::nullopt, focal_ratio);
-    while (source->next()) {
-    }
-    return source->report();
-  };
-  EXPECT_TRUE(says(notes(1.0), "pixels 1.333 times as wide as high"));
-  EXPECT_FALSE(says(notes(4.0 / 3), "as wide as high"));
-  EXPECT_FALSE(says(notes(std::nullopt), "as wide as high"));
-  expect_bad_input(
-      [&] {
-        (void)open_video(folder / "wide.mkv", {85, 48}, {}, std::nullopt);
-      },
-      "wide.mkv", "stored as 64x48", "by 0.75");
+  VideoSpec matroska = numbered(2);
+  VideoSpec avi = matroska;
+  avi.codec = AV_CODEC_ID_MJPEG;
+  avi.format = AV_PIX_FMT_YUVJ444P;
+  avi.states_colours = false;
+  for (auto& [name, spec] : {std::pair("wide.mkv", matroska), std::pair("wide.avi", avi)}) {
+    VideoSpec wide = spec;
+    wide.pixel_aspect = 4.0 / 3;
+    write_video(folder / name, wide);
+    EXPECT_NEAR(video_pixel_aspect(folder / name), 4.0 / 3, 1e-3);
+    const auto notes = [&](std::optional<double> focal_ratio) {
+      const auto source = open_video(folder / name, kVideoSize, {}, std::nullopt, focal_ratio);
+      while (source->next()) {
+      }
+      return source->report();
+    };
+    EXPECT_TRUE(says(notes(1.0), "pixels 1.333 times as wide as high")) << name;
+    EXPECT_FALSE(says(notes(4.0 / 3), "as wide as high")) << name;
+    EXPECT_FALSE(says(notes(std::nullopt), "as wide as high")) << name;
+    expect_bad_input(
+        [&] {
+          (void)open_video(folder / name, {85, 48}, {}, std::nullopt);
+        },
+        name, "stored as 64x48", "by 0.75");
 
-  spec.pixel_aspect.reset();
-  write_video(folder / "square.mkv", spec);
-  EXPECT_EQ(video_pixel_aspect(folder / "square.mkv"), 1);
+    write_video(folder / name, spec);
+    EXPECT_EQ(video_pixel_aspect(folder / name), 1);
+    EXPECT_FALSE(says(notes(1.2), "as wide as high")) << name;
+  }
 }
 
 TEST(VideoFiles, DamagedFramesAreLeftOutAndCounted) {
