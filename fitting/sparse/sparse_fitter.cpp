@@ -25,8 +25,8 @@ namespace {
 /// patch has kept samples, and as many again as kStepOverhead.
 constexpr std::size_t kUnitsPerSample = 4;
 constexpr std::size_t kStepOverhead = 16;
-/// Patches of a view that may be improved in any case.
-constexpr std::size_t kFewestSteps = 32;
+/// What any view may spend, as one of 8,192 samples: small objects leave the time for it.
+constexpr std::size_t kFewestUnits = 32768;
 /// Samples from which a patch may be more than one colour.
 constexpr std::size_t kFewestToImprove = 4;
 /// Spread of the colours to assume before the first fit.
@@ -194,16 +194,16 @@ void SparsePatches::collect_requests(const core::SampleBatch& batch) {
     requests_.push_back({state.refit_priority, static_cast<std::uint32_t>(i)});
   }
   // Sort no more of them than can be paid for.
-  std::size_t units = batch.size() * kUnitsPerSample;
-  const std::size_t most = std::max(kFewestSteps, units / (kStepOverhead + kFewestToImprove));
+  std::size_t units = std::max(kFewestUnits, batch.size() * kUnitsPerSample);
+  const std::size_t most = units / (kStepOverhead + kFewestToImprove);
   const auto end =
       requests_.begin() + static_cast<std::ptrdiff_t>(std::min(most, requests_.size()));
   std::partial_sort(requests_.begin(), end, requests_.end());
   std::size_t granted = 0;
   for (auto request = requests_.begin(); request != end; ++request, ++granted) {
     const std::size_t cost = kStepOverhead + states_[batch.patch[request->position]].samples.size();
-    if (cost > units && granted >= kFewestSteps) break;
-    units -= std::min(units, cost);
+    if (cost > units) break;
+    units -= cost;
   }
   requests_.resize(granted);
 }
