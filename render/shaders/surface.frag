@@ -9,6 +9,11 @@ layout(location = 2) in vec2 corner_place;
 #ifdef BETWEEN
 layout(location = 3) in vec3 corner_in_object;
 layout(location = 4) in vec3 corner_normal;
+#ifdef TESSELLATED
+layout(location = 5) flat in int triangle_idx;
+#else
+#define triangle_idx gl_PrimitiveID
+#endif
 #endif
 layout(location = 0) out vec4 colour;
 
@@ -19,7 +24,7 @@ void main() {
   rgb += surface_texture(corner_place);
 #endif
 #ifdef BETWEEN
-  rgb += between_patches(gl_PrimitiveID, corner_in_object, normalize(corner_normal));
+  rgb += between_patches(triangle_idx, corner_in_object, normalize(corner_normal));
 #endif
   colour = vec4(clamp(rgb, 0.0, 1.0), alpha);
 }

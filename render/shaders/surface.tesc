@@ -17,6 +17,8 @@ layout(location = 3) in vec3 corner_in_object[];
 layout(location = 3) out vec3 control_in_object[];
 layout(location = 4) in vec3 corner_normal[];
 layout(location = 4) out vec3 control_normal[];
+layout(location = 5) in int corner_triangle[];
+layout(location = 5) out int control_triangle[];
 #endif
 
 float segments(vec3 a, vec3 b) {
@@ -36,6 +38,7 @@ void main() {
 #ifdef BETWEEN
   control_in_object[gl_InvocationID] = corner_in_object[gl_InvocationID];
   control_normal[gl_InvocationID] = corner_normal[gl_InvocationID];
+  control_triangle[gl_InvocationID] = corner_triangle[gl_InvocationID];
 #endif
   if (gl_InvocationID == 0) {
     vec3 a = corner_in_camera[0];

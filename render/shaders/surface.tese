@@ -15,6 +15,8 @@ layout(location = 3) in vec3 control_in_object[];
 layout(location = 3) out vec3 corner_in_object;
 layout(location = 4) in vec3 control_normal[];
 layout(location = 4) out vec3 corner_normal;
+layout(location = 5) in int control_triangle[];
+layout(location = 5) flat out int triangle_idx;
 #endif
 
 void main() {
@@ -35,6 +37,7 @@ void main() {
                      weights.z * control_in_object[2];
   corner_normal = weights.x * control_normal[0] + weights.y * control_normal[1] +
                   weights.z * control_normal[2];
+  triangle_idx = control_triangle[0];
 #endif
   gl_Position = clip_from_camera(in_camera);
 }

@@ -34,6 +34,8 @@ struct TexturedVertex {
 };
 static_assert(sizeof(TexturedVertex) == sizeof(Vertex) + 2 * sizeof(std::uint32_t));
 
+constexpr GLuint kCornerUnit = 4, kVertexUnit = 5;  // as in surface.vert
+
 gl::Program make_surface_program(const gl::Functions& gl, const std::string& patch_glsl,
                                  bool adds_between, const std::string& texture_glsl,
                                  bool tessellated) {
@@ -117,7 +119,13 @@ void SurfacePass::draw(GLuint target, const core::CameraModel& camera,
   gl_.UseProgram(chosen.name());
   gl_.BindVertexArray(vertex_array_.name());
   gl_.PatchParameteri(GL_PATCH_VERTICES, 3);
-  gl_.DrawElements(tessellated ? GL_PATCHES : GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+  if (tessellated && adds_between_) {
+    bind_vertices_to_look_up();
+    gl_.DrawArraysInstanced(GL_PATCHES, 0, index_count_, 1);
+  } else {
+    gl_.DrawElements(tessellated ? GL_PATCHES : GL_TRIANGLES, index_count_, GL_UNSIGNED_INT,
+                     nullptr);
+  }
   gl_.BindVertexArray(0);
   gl_.ClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
 }
@@ -192,6 +200,19 @@ void SurfacePass::make_buffers(const std::vector<Vertex>& vertices,
                                 attribute * sizeof(Eigen::Vector3f));
     gl_.VertexArrayAttribBinding(array, attribute, 0);
   }
+}
+
+/// Made at first need.
+void SurfacePass::bind_vertices_to_look_up() {
+  assert(!texture_glsl_.empty());
+  if (corner_texture_.name() == 0) {
+    corner_texture_ = gl::make_texture(gl_, GL_TEXTURE_BUFFER);
+    gl_.TextureBuffer(corner_texture_.name(), GL_R32UI, indices_.name());
+    vertex_texture_ = gl::make_texture(gl_, GL_TEXTURE_BUFFER);
+    gl_.TextureBuffer(vertex_texture_.name(), GL_RGBA32UI, vertices_.name());
+  }
+  gl_.BindTextureUnit(kCornerUnit, corner_texture_.name());
+  gl_.BindTextureUnit(kVertexUnit, vertex_texture_.name());
 }
 
 void SurfacePass::set_state(const core::CameraModel& camera) const {

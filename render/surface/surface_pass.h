@@ -42,6 +42,7 @@ class SurfacePass {
   template <typename Vertex>
   void make_buffers(const std::vector<Vertex>& vertices,
                     const decltype(core::Mesh::triangles)& triangles);
+  void bind_vertices_to_look_up();
   void set_state(const core::CameraModel& camera) const;
   [[nodiscard]] bool needs_tessellation(const Eigen::Isometry3d& camera_from_object,
                                         double longest_segment) const;
@@ -60,6 +61,7 @@ class SurfacePass {
   gl::Buffer indices_;
   gl::Buffer view_block_;
   gl::VertexArray vertex_array_;
+  gl::Texture corner_texture_, vertex_texture_;  ///< the same buffers
   gl::Program plain_;
   gl::Program tessellated_;  ///< made at first need
 };

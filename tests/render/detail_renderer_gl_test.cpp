@@ -74,6 +74,8 @@ std::vector<View> views() {
   return {{"a sphere", testing::sphere(0.1f, 20), testing::plain_camera(320, 240), 1},
           {"a knot", testing::torus_knot(0.2f, 96, 12), testing::plain_camera(320, 240), 1},
           {"large triangles through a lens", testing::tetrahedron(0.12f),
+           testing::distorted_camera(320, 240), 13},
+          {"hundreds of triangles through a lens", testing::sphere(0.1f, 12),
            testing::distorted_camera(320, 240), 13}};
 }
 
