@@ -2,7 +2,6 @@
 #include "pipeline/mesh_heights.h"
 
 #include "core/mesh/bounds.h"
-#include "fitting/heights/refine_heights.h"
 #include "pipeline/hold_out.h"
 #include "pipeline/texel_size.h"
 
@@ -57,7 +56,8 @@ std::vector<PosedImage> spread_images(const capture::Session& session, const Fra
 }  // namespace
 
 MeshRefinement refine_mesh_heights(const core::Mesh& mesh, const std::vector<PosedImage>& images,
-                                   int threads, ProgressSink& sink) {
+                                   fitting::heights::Outlines outlines, int threads,
+                                   ProgressSink& sink) {
   std::vector<PosedImage> views, check_views;
   std::vector<Eigen::Isometry3d> from;
   const std::size_t count = std::min(kMostStills, images.size());
@@ -75,10 +75,11 @@ MeshRefinement refine_mesh_heights(const core::Mesh& mesh, const std::vector<Pos
   }
   const double texel_m = pixel_footprint_m(from, core::bounds_of(mesh).center().cast<double>(),
                                            views[0].camera->intrinsics().focal_px.x());
-  auto refined = fitting::heights::refine_heights(
-      mesh, views, check_views, static_cast<float>(texel_m), threads, [&](int done, int all) {
-        sink.progress({"refining the mesh", done, all});
-      });
+  auto refined =
+      fitting::heights::refine_heights(mesh, views, check_views, static_cast<float>(texel_m),
+                                       outlines, threads, [&](int done, int all) {
+                                         sink.progress({"refining the mesh", done, all});
+                                       });
   if (!(refined.residual_before > 0)) {
     sink.note("the frames show too little of the mesh to refine it, it stays as it is");
   }
@@ -93,7 +94,8 @@ MeshRefinement refine_mesh_heights(const capture::Session& session, const core::
                                    const FrameChoice& choice, PoseStage& poses, int threads,
                                    ProgressSink& sink) {
   return refine_mesh_heights(
-      mesh, spread_images(session, choice, most_views(session.camera), poses, sink), threads, sink);
+      mesh, spread_images(session, choice, most_views(session.camera), poses, sink),
+      fitting::heights::Outlines::may_move, threads, sink);
 }
 
 }  // namespace sheen::pipeline

@@ -3,6 +3,7 @@
 
 #include "capture/session/session.h"
 #include "core/mesh/mesh.h"
+#include "fitting/heights/refine_heights.h"
 #include "fitting/heights/seen_texels.h"
 #include "pipeline/options.h"
 #include "pipeline/pose_stage.h"
@@ -28,11 +29,13 @@ struct MeshRefinement {
 /// note.
 MeshRefinement refine_mesh_heights(const core::Mesh& mesh,
                                    const std::vector<fitting::heights::PosedImage>& images,
-                                   int threads, ProgressSink& sink);
+                                   fitting::heights::Outlines outlines, int threads,
+                                   ProgressSink& sink);
 
-/// The same from frames of a session that `choice` fits: those that are held out have no part in
-/// it. Their images stay in memory, of large ones fewer are taken: at most 512 MiB. Poses are taken
-/// as they come from `poses`, frames without one are passed over.
+/// The same from frames of a session that `choice` fits, of a mesh whose outlines may move: those
+/// that are held out have no part in it. Their images stay in memory, of large ones fewer are
+/// taken: at most 512 MiB. Poses are taken as they come from `poses`, frames without one are passed
+/// over.
 MeshRefinement refine_mesh_heights(const capture::Session& session, const core::Mesh& mesh,
                                    const FrameChoice& choice, PoseStage& poses, int threads,
                                    ProgressSink& sink);

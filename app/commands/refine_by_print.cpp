@@ -24,7 +24,8 @@ PrintRefinement refine_by_print(const capture::Session& session,
   }
   PrintRefinement result;
   while (result.rounds < kMostRounds) {
-    auto refined = pipeline::refine_mesh_heights(mesh, views, threads, sink);
+    auto refined =
+        pipeline::refine_mesh_heights(mesh, views, fitting::heights::Outlines::stay, threads, sink);
     if (!refined.is_accepted || refined.residual_change > -kClearFall) break;
     for (Eigen::Vector3f& position : refined.mesh.positions) {
       position.z() = std::max(position.z(), 0.0F);  // the sheet carries the object

@@ -13,7 +13,6 @@
 namespace sheen::fitting::heights {
 namespace {
 
-constexpr double kSlope = 0.1;  ///< expected of the heights along an edge
 /// Neighbouring texels of a view differ from the mean alike (highlights, unsharp images, poses): so
 /// many say as much as one.
 constexpr double kAlike = 10;
@@ -128,7 +127,7 @@ std::vector<std::uint8_t> HeightSystem::seen() const {
   return is_seen;
 }
 
-Eigen::VectorXd HeightSystem::step(const Eigen::VectorXd& outline, double longest_m) const {
+Eigen::VectorXd HeightSystem::step(const HeightPrior& prior, double longest_m) const {
   const auto count = static_cast<Eigen::Index>(field_.size());
   const std::vector<std::uint8_t> is_seen = seen();
   const Eigen::VectorXd& height = field_.heights();
@@ -153,7 +152,7 @@ Eigen::VectorXd HeightSystem::step(const Eigen::VectorXd& outline, double longes
     }
   }
   for (const HeightField::Edge& edge : field_.edges()) {
-    const double stiffness = 1 / std::pow(kSlope * static_cast<double>(edge.length_m), 2);
+    const double stiffness = 1 / std::pow(prior.slope * static_cast<double>(edge.length_m), 2);
     const double pull = stiffness * (height[edge.second] - height[edge.first]);
     add(edge.first, edge.first, stiffness);
     add(edge.second, edge.second, stiffness);
@@ -165,8 +164,8 @@ Eigen::VectorXd HeightSystem::step(const Eigen::VectorXd& outline, double longes
   for (std::uint32_t i = 0; i < field_.size(); ++i) {
     // A height that is not seen keeps its place, and so has an equation of its own.
     entries.emplace_back(static_cast<int>(i), static_cast<int>(i),
-                         is_seen[i] != 0 ? outline[i] : 1.0);
-    right[i] = is_seen[i] != 0 ? right[i] - outline[i] * height[i] : 0.0;
+                         is_seen[i] != 0 ? prior.outline[i] : 1.0);
+    right[i] = is_seen[i] != 0 ? right[i] - prior.outline[i] * height[i] : 0.0;
   }
   Eigen::SparseMatrix<double> matrix(count, count);
   matrix.setFromTriplets(entries.begin(), entries.end());

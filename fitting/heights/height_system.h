@@ -18,6 +18,12 @@
 
 namespace sheen::fitting::heights {
 
+/// What is supposed of heights before views are looked at.
+struct HeightPrior {
+  double slope;             ///< expected along an edge, > 0
+  Eigen::VectorXd outline;  ///< what keeps a height at 0, of each, >= 0, 1 / m^2
+};
+
 /// The least squares whose solution is the next step s of all heights h:
 ///
 ///     1 / variance  sum_x sum_views q |e - sum_i b_i k_i s_i g . o|^2
@@ -40,8 +46,7 @@ class HeightSystem {
   [[nodiscard]] std::vector<std::uint8_t> seen() const;
 
   /// The next step, metres, none longer than `longest_m`; 0 for heights that are not seen.
-  /// `outline` has an entry >= 0 per height, 1 / m^2.
-  [[nodiscard]] Eigen::VectorXd step(const Eigen::VectorXd& outline, double longest_m) const;
+  [[nodiscard]] Eigen::VectorXd step(const HeightPrior& prior, double longest_m) const;
 
  private:
   /// Normal equations of a triangle's corners: 00, 11, 22, 01, 12, 20 and the right side.

@@ -15,76 +15,100 @@ namespace sheen::fitting::heights {
 namespace {
 
 constexpr int kPasses = 5;
+constexpr double kSettled = 0.02;  ///< of a texel: smaller steps are not gone on with
 constexpr std::size_t kMostTexels = std::size_t{1} << 21;
 constexpr double kOutline_px = 0.5;
+constexpr double kSlope = 0.1;        ///< of details
+constexpr double kStiffSlope = 0.03;  ///< of a shape that is wrong as a whole
+/// Fall of the residual for which outlines are let go. What gloss and poses make of right meshes
+/// stays below a third of it.
+constexpr double kClearFall = 0.025;
 
 class Refinement {
  public:
   Refinement(const core::Mesh& mesh, std::span<const PosedImage> views,
-             std::span<const PosedImage> check_views, float texel_m, int threads,
+             std::span<const PosedImage> check_views, float texel_m, Outlines outlines, int threads,
              const std::function<void(int, int)>& progress)
       : mesh_(mesh),
         views_(views),
         check_views_(check_views),
         texel_m_(texel_m),
+        outlines_(outlines),
         threads_(threads),
         progress_(progress),
         atlas_(core::make_atlas(mesh, texel_m, kMostTexels)),
         surface_(atlas_),
         field_(mesh),
-        edges_(neighbourhood_edges(field_, static_cast<double>(texel_m))),
-        outline_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(field_.size()))) {}
+        edges_(neighbourhood_edges(field_, static_cast<double>(texel_m))) {}
 
   HeightRefinement run();
 
  private:
-  void look(SeenTexels& seen, bool notes_outlines);
-  void note_outline(const SeenTexels& seen, const PosedImage& view);
+  struct Attempt {
+    Eigen::VectorXd heights;
+    double residual;
+
+    [[nodiscard]] bool is_below(const Attempt& other, double fall) const {
+      return residual <= (1 - fall) * other.residual;
+    }
+  };
+
+  void look(SeenTexels& seen, Eigen::VectorXd* outline = nullptr);
+  void note_outline(const SeenTexels& seen, const PosedImage& view, Eigen::VectorXd& outline) const;
   double residual(SeenTexels& seen);
+  [[nodiscard]] HeightSystem system(const core::Mesh& raised, const SeenTexels& seen) const;
+  Attempt attempt(const Eigen::VectorXd& start, const HeightPrior& prior);
+  HeightRefinement outcome(double before, const Attempt& best, const Attempt& kept,
+                           std::span<const std::uint8_t> is_seen);
   void tell_progress();
 
   const core::Mesh& mesh_;
   std::span<const PosedImage> views_, check_views_;
   float texel_m_;
+  Outlines outlines_;
   int threads_;
   const std::function<void(int, int)>& progress_;
   core::Atlas atlas_;
   detail::SurfaceTexels surface_;
   HeightField field_;
-  int edges_;                ///< that a neighbourhood reaches over
-  Eigen::VectorXd outline_;  ///< of every height: what keeps outlines, 1 / m^2
+  int edges_;  ///< that a neighbourhood reaches over
   std::vector<TexelStatistics> texels_;
   int looked_at_ = 0;
 };
 
 void Refinement::tell_progress() {
-  const auto all = (kPasses + 1) * views_.size() + 2 * check_views_.size();
-  if (progress_) progress_(++looked_at_, static_cast<int>(all));
+  // Of the mesh as it is and of one or two attempts; where there is a third, it is not foreseen.
+  const std::size_t attempts = outlines_ == Outlines::stay ? 1 : 2;
+  const auto all = static_cast<int>((1 + attempts * kPasses) * views_.size() +
+                                    (1 + attempts) * check_views_.size());
+  looked_at_ = std::min(looked_at_ + 1, all);
+  if (progress_) progress_(looked_at_, all);
 }
 
 // A texel belongs to one triangle and a triangle to one thread; views come in order.
-void Refinement::look(SeenTexels& seen, bool notes_outlines) {
+void Refinement::look(SeenTexels& seen, Eigen::VectorXd* outline) {
   texels_.assign(atlas_.texel_count(), {});
   for (const PosedImage& view : views_) {
     tell_progress();
     seen.set_view(view);
     seen.for_each(
         [&](std::size_t, const SeenTexel& texel) { texels_[texel.texel_idx].add(texel); });
-    if (notes_outlines) note_outline(seen, view);
+    if (outline != nullptr) note_outline(seen, view, *outline);
   }
 }
 
 /// A height h of a vertex on the outline moves it there by h sin f / z pixels.
-void Refinement::note_outline(const SeenTexels& seen, const PosedImage& view) {
+void Refinement::note_outline(const SeenTexels& seen, const PosedImage& view,
+                              Eigen::VectorXd& outline) const {
   const double focal_px = view.camera->intrinsics().focal_px.mean();
   const Eigen::Vector3f eye = core::eye_in_object(view.camera_from_object);
   for (std::size_t i = 0; i < mesh_.positions.size(); ++i) {
     if (!seen.is_at_outline(i)) continue;
     const auto height = field_.of_vertex(i);
     const Eigen::Vector3f ray = (eye - mesh_.positions[i]).normalized();
-    const double cosine = field_.directions()[height].dot(ray);
+    const double cosine = static_cast<double>(field_.directions()[height].dot(ray));
     const double px_per_m = focal_px / static_cast<double>(seen.vertices().depth_m[i]);
-    outline_[height] += (1 - cosine * cosine) * std::pow(px_per_m / kOutline_px, 2);
+    outline[height] += (1 - cosine * cosine) * std::pow(px_per_m / kOutline_px, 2);
   }
 }
 
@@ -120,42 +144,85 @@ double Refinement::residual(SeenTexels& seen) {
   return weight > 0 ? square / weight : 0;
 }
 
-HeightRefinement Refinement::run() {
-  HeightRefinement result{.mesh = mesh_};
-  std::vector<std::uint8_t> is_seen;
-  core::Mesh raised = mesh_;
-  for (int pass = 0; pass <= kPasses; ++pass) {
+HeightSystem Refinement::system(const core::Mesh& raised, const SeenTexels& seen) const {
+  return {field_, raised, seen.planes(), surface_, atlas_, texels_, edges_, threads_};
+}
+
+/// Moves heights on from `start`, where the first pass has led, and measures what is left there.
+Refinement::Attempt Refinement::attempt(const Eigen::VectorXd& start, const HeightPrior& prior) {
+  field_.heights() = start;
+  bool has_settled = false;
+  for (int pass = 1; pass < kPasses && !has_settled; ++pass) {
+    const core::Mesh raised = field_.raised();
     SeenTexels seen(raised, atlas_, surface_, threads_);
-    look(seen, pass == 0);
-    if (pass == 0) result.residual_before = residual(seen);
-    if (pass == kPasses) result.residual_after = residual(seen);
-    if (pass == kPasses) break;
-    const HeightSystem system(field_, raised, seen.planes(), surface_, atlas_, texels_, edges_,
-                              threads_);
-    if (pass == 0) is_seen = system.seen();
-    field_.heights() += system.step(outline_, texel_m_);
-    raised = field_.raised();
+    look(seen);
+    const Eigen::VectorXd step = system(raised, seen).step(prior, static_cast<double>(texel_m_));
+    field_.heights() += step;
+    const double settled_m = kSettled * static_cast<double>(texel_m_);
+    has_settled = step.squaredNorm() < settled_m * settled_m * static_cast<double>(step.size());
   }
+  const core::Mesh raised = field_.raised();
+  SeenTexels seen(raised, atlas_, surface_, threads_);
+  look(seen);
+  return {field_.heights(), residual(seen)};
+}
+
+// A mesh of which only details are wrong has right outlines. They are let go where that is clearly
+// better, first for the shape as a whole and only then for its details: what gloss and errors of
+// poses pass for are details.
+HeightRefinement Refinement::run() {
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(field_.size()));
+  HeightPrior keeps_outlines{kSlope, none};
+  const HeightPrior whole{kStiffSlope, none};
+  const HeightPrior details{kSlope, none};
+  const auto longest_m = static_cast<double>(texel_m_);
+
+  SeenTexels seen(mesh_, atlas_, surface_, threads_);
+  look(seen, &keeps_outlines.outline);
+  const Attempt given{none, residual(seen)};
+  const HeightSystem first = system(mesh_, seen);
+  const Eigen::VectorXd kept_step = first.step(keeps_outlines, longest_m);
+  const Eigen::VectorXd whole_step = first.step(whole, longest_m);
+  const Attempt kept = attempt(kept_step, keeps_outlines);
+  Attempt best = kept.is_below(given, kLeastFall) ? kept : given;
+  if (outlines_ == Outlines::stay) return outcome(given.residual, best, kept, first.seen());
+  const Attempt moved = attempt(whole_step, whole);
+  if (moved.is_below(best, kClearFall)) {
+    const Attempt further = attempt(moved.heights, details);
+    best = further.is_below(moved, kLeastFall) ? further : moved;
+  }
+  return outcome(given.residual, best, kept, first.seen());
+}
+
+/// Where nothing is accepted, `kept` is told of.
+HeightRefinement Refinement::outcome(double before, const Attempt& best, const Attempt& kept,
+                                     std::span<const std::uint8_t> is_seen) {
+  HeightRefinement result{.mesh = mesh_, .residual_before = before};
+  result.is_accepted = best.residual < before;
+  const Attempt& told = result.is_accepted ? best : kept;
+  result.residual_after = told.residual;
   std::vector<double> magnitudes;
   for (std::size_t i = 0; i < is_seen.size(); ++i) {
     if (is_seen[i] != 0) {
-      magnitudes.push_back(std::abs(field_.heights()[static_cast<Eigen::Index>(i)]));
+      magnitudes.push_back(std::abs(told.heights[static_cast<Eigen::Index>(i)]));
     }
   }
   if (!magnitudes.empty()) result.median_m = core::upper_median(magnitudes);
-  result.is_accepted =
-      result.residual_before > 0 && result.change() <= -kLeastFall && field_.heights().allFinite();
-  if (result.is_accepted) result.mesh = std::move(raised);
+  if (result.is_accepted) {
+    field_.heights() = best.heights;
+    result.mesh = field_.raised();
+  }
   return result;
 }
 
 }  // namespace
 
 HeightRefinement refine_heights(const core::Mesh& mesh, std::span<const PosedImage> views,
-                                std::span<const PosedImage> check_views, float texel_m, int threads,
+                                std::span<const PosedImage> check_views, float texel_m,
+                                Outlines outlines, int threads,
                                 const std::function<void(int, int)>& progress) {
   if (views.size() < 2 || check_views.empty() || mesh.triangles.empty()) return {.mesh = mesh};
-  return Refinement(mesh, views, check_views, texel_m, threads, progress).run();
+  return Refinement(mesh, views, check_views, texel_m, outlines, threads, progress).run();
 }
 
 }  // namespace sheen::fitting::heights

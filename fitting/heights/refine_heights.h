@@ -26,16 +26,20 @@ struct HeightRefinement {
   }
 };
 
+/// Outlines of a mesh that was measured from them keep their places, to about half a pixel; those
+/// of a mesh that was given may move with the shape as a whole where that is clearly better.
+enum class Outlines { stay, may_move };
+
 /// The residual must fall by this part for heights to be accepted.
 inline constexpr double kLeastFall = 0.015;
 
 /// Estimates heights from `views` and accepts them when the residual on `check_views`, which have
 /// no part in the estimate, falls by at least kLeastFall. `texel_m` > 0 is what a pixel covers on
-/// the surface. Outlines in `views` keep their places to about half a pixel; positions that fewer
-/// than two views show do not move. Calls `progress(done, all)` before each view of each pass; what
-/// it throws comes out. The same on any number of threads.
+/// the surface. Positions that fewer than two views show do not move. Calls `progress(done, all)`
+/// before each view of each pass; what it throws comes out. The same on any number of threads.
 HeightRefinement refine_heights(const core::Mesh& mesh, std::span<const PosedImage> views,
-                                std::span<const PosedImage> check_views, float texel_m, int threads,
+                                std::span<const PosedImage> check_views, float texel_m,
+                                Outlines outlines, int threads,
                                 const std::function<void(int done, int all)>& progress = {});
 
 }  // namespace sheen::fitting::heights

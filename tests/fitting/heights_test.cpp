@@ -89,8 +89,9 @@ Split split(const std::vector<PosedImage>& all) {
   return parts;
 }
 
-HeightRefinement refine(const core::Mesh& mesh, const Split& parts, int threads = 1) {
-  return refine_heights(mesh, parts.views, parts.check_views, kTexel_m, threads);
+HeightRefinement refine(const core::Mesh& mesh, const Split& parts, int threads = 1,
+                        Outlines outlines = Outlines::may_move) {
+  return refine_heights(mesh, parts.views, parts.check_views, kTexel_m, outlines, threads);
 }
 
 const Photographs& printed_hill() {
@@ -119,6 +120,29 @@ TEST(Heights, AFlatMeshOfAHillGetsItsHeights) {
   }
   EXPECT_LT(std::sqrt(squared / squared_before), 0.2);
   EXPECT_LT(found.change(), -0.5);
+}
+
+// The whole square lies 4 mm, two pixels, behind the printed one, outline and all: where outlines
+// may move it gets there, up to a third; where they stay most of its border does.
+TEST(Heights, AMeshBesideItsPlaceIsMovedAsAWhole) {
+  static const Photographs photographs(square(32), 48, blobs);
+  const Split parts = split(in_front(photographs));
+  core::Mesh behind = square(32);
+  for (Eigen::Vector3f& position : behind.positions) position.x() -= 4e-3f;
+  const auto median_x_m = [&](Outlines outlines) {
+    const HeightRefinement found = refine(behind, parts, 1, outlines);
+    EXPECT_TRUE(found.is_accepted);
+    std::vector<float> off;
+    for (const Eigen::Vector3f& position : found.mesh.positions) {
+      off.push_back(std::abs(position.x()));
+    }
+    std::nth_element(off.begin(), off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2),
+                     off.end());
+    return off[off.size() / 2];
+  };
+  const float moved_m = median_x_m(Outlines::may_move);
+  EXPECT_LT(moved_m, 4e-3f / 3);
+  EXPECT_LT(moved_m, 0.8f * median_x_m(Outlines::stay));
 }
 
 // Normals turn with the surface: those of the hill are (1, -dh/dy, -dh/dz).
