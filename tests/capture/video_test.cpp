@@ -240,8 +240,9 @@ TEST(VideoPixels, ThatAreNotSquareAreToldToTheCameraFile) {
   avi.codec = AV_CODEC_ID_MJPEG;
   avi.format = AV_PIX_FMT_YUVJ444P;
   avi.states_colours = false;
-  for (auto& [name, spec] : {std::pair("wide.mkv", matroska), std::pair("wide.avi", avi)}) {
-    VideoSpec wide = spec;
+  for (const auto& file : {std::pair("wide.mkv", matroska), std::pair("wide.avi", avi)}) {
+    const char* const name = file.first;
+    VideoSpec wide = file.second;
     wide.pixel_aspect = 4.0 / 3;
     write_video(folder / name, wide);
     EXPECT_NEAR(video_pixel_aspect(folder / name), 4.0 / 3, 1e-3);
@@ -260,7 +261,7 @@ TEST(VideoPixels, ThatAreNotSquareAreToldToTheCameraFile) {
         },
         name, "stored as 64x48", "by 0.75");
 
-    write_video(folder / name, spec);
+    write_video(folder / name, file.second);
     EXPECT_EQ(video_pixel_aspect(folder / name), 1);
     EXPECT_FALSE(says(notes(1.2), "as wide as high")) << name;
   }
