@@ -129,7 +129,8 @@ void AviReader::note_stream_format(const Chunk& chunk) {
   for (int i = 0; i < 4; ++i) header_.codec += letter(u32(start.data() + 16), i);
 }
 
-// OpenDML 1.02: the aspect of the whole frame, height first, and its size in pixels.
+// OpenDML 1.02: the aspect of the whole frame, height in the lower half, and its size in pixels.
+// Zeros give no number within the limits.
 void AviReader::note_video_properties(const Chunk& chunk) {
   constexpr double widest = 8;  // beyond it, it is no statement about a camera's pixels
   if (video_stream_ < 0 || video_stream_ != streams_ - 1) return;

@@ -63,9 +63,8 @@ class MotionJpegSource : public FrameSource {
 
   [[nodiscard]] SourceReport report() const override {
     SourceReport report{damaged_, {}};
-    const std::string aspect =
-        focal_ratio_ ? aspect_doubt(reader_.header().pixel_aspect, *focal_ratio_) : "";
-    if (!aspect.empty()) report.notes.push_back(aspect);
+    std::string aspect = aspect_doubt(reader_.header().pixel_aspect, focal_ratio_);
+    if (!aspect.empty()) report.notes.push_back(std::move(aspect));
     if (auto disagreement = rate_.disagreement()) report.notes.push_back(*disagreement);
     for (std::string& note : report.notes) note = path_.string() + ": " + note;
     return report;

@@ -33,16 +33,15 @@ void refuse_shown_size(const std::filesystem::path& subject, const ImageSize& st
                   factor));
 }
 
-std::string aspect_doubt(double pixel_aspect, double focal_ratio) {
-  const double off_stated = std::abs(std::log(focal_ratio / pixel_aspect));
-  if (std::abs(pixel_aspect - 1) < kSquare || off_stated < std::abs(std::log(focal_ratio))) {
-    return {};
-  }
+std::string aspect_doubt(double pixel_aspect, std::optional<double> focal_ratio) {
+  if (!focal_ratio || std::abs(pixel_aspect - 1) < kSquare) return {};
+  const double off_stated = std::abs(std::log(*focal_ratio / pixel_aspect));
+  if (off_stated < std::abs(std::log(*focal_ratio))) return {};
   return fmt::format(
       "states pixels {0:.4g} times as wide as high, but fy / fx of the camera file is {1:.4g}, as "
       "of square ones; unless that file was made from the stored pixels of this camera, divide its "
       "fx and its cx + 0.5 by {0:.4g}",
-      pixel_aspect, focal_ratio);
+      pixel_aspect, *focal_ratio);
 }
 
 }  // namespace sheen::capture

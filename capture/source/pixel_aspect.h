@@ -18,7 +18,7 @@ void refuse_shown_size(const std::filesystem::path& subject, const ImageSize& st
                        const ImageSize& expected, double pixel_aspect);
 
 /// Where a camera's fy / fx is that of square pixels and the images' are not: to be said, without
-/// the file's name. Empty where they agree.
-std::string aspect_doubt(double pixel_aspect, double focal_ratio);
+/// the file's name. Empty where they agree or the camera is not known.
+std::string aspect_doubt(double pixel_aspect, std::optional<double> focal_ratio);
 
 }  // namespace sheen::capture

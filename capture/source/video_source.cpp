@@ -59,9 +59,8 @@ class VideoSource : public FrameSource {
   [[nodiscard]] SourceReport report() const override {
     // What may make poses wrong comes first.
     SourceReport report{decoder_.damaged(), {}};
-    const std::string aspect =
-        focal_ratio_ ? aspect_doubt(decoder_.facts().pixel_aspect, *focal_ratio_) : "";
-    if (!aspect.empty()) report.notes.push_back(aspect);
+    std::string aspect = aspect_doubt(decoder_.facts().pixel_aspect, focal_ratio_);
+    if (!aspect.empty()) report.notes.push_back(std::move(aspect));
     if (!turn_.note.empty()) report.notes.push_back(turn_.note);
     for (const std::string& note : colour_.notes()) report.notes.push_back(note);
     if (auto disagreement = rate_.disagreement()) report.notes.push_back(*disagreement);

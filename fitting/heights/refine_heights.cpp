@@ -57,7 +57,7 @@ class Refinement {
   void note_outline(const SeenTexels& seen, const PosedImage& view, Eigen::VectorXd& outline) const;
   double residual(SeenTexels& seen);
   [[nodiscard]] HeightSystem system(const core::Mesh& raised, const SeenTexels& seen) const;
-  Attempt attempt(const Eigen::VectorXd& start, const HeightPrior& prior);
+  Attempt attempt(const HeightPrior& prior);
   HeightRefinement outcome(double before, const Attempt& best, const Attempt& kept,
                            std::span<const std::uint8_t> is_seen);
   void tell_progress();
@@ -148,9 +148,9 @@ HeightSystem Refinement::system(const core::Mesh& raised, const SeenTexels& seen
   return {field_, raised, seen.planes(), surface_, atlas_, texels_, edges_, threads_};
 }
 
-/// Moves heights on from `start`, where the first pass has led, and measures what is left there.
-Refinement::Attempt Refinement::attempt(const Eigen::VectorXd& start, const HeightPrior& prior) {
-  field_.heights() = start;
+/// Moves heights on from those that the first step led to, and measures what is left there.
+Refinement::Attempt Refinement::attempt(const HeightPrior& prior) {
+  const double settled_m = kSettled * static_cast<double>(texel_m_);
   bool has_settled = false;
   for (int pass = 1; pass < kPasses && !has_settled; ++pass) {
     const core::Mesh raised = field_.raised();
@@ -158,7 +158,6 @@ Refinement::Attempt Refinement::attempt(const Eigen::VectorXd& start, const Heig
     look(seen);
     const Eigen::VectorXd step = system(raised, seen).step(prior, static_cast<double>(texel_m_));
     field_.heights() += step;
-    const double settled_m = kSettled * static_cast<double>(texel_m_);
     has_settled = step.squaredNorm() < settled_m * settled_m * static_cast<double>(step.size());
   }
   const core::Mesh raised = field_.raised();
@@ -173,23 +172,25 @@ Refinement::Attempt Refinement::attempt(const Eigen::VectorXd& start, const Heig
 HeightRefinement Refinement::run() {
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(field_.size()));
   HeightPrior keeps_outlines{kSlope, none};
-  const HeightPrior whole{kStiffSlope, none};
-  const HeightPrior details{kSlope, none};
-  const auto longest_m = static_cast<double>(texel_m_);
-
   SeenTexels seen(mesh_, atlas_, surface_, threads_);
   look(seen, &keeps_outlines.outline);
   const Attempt given{none, residual(seen)};
   const HeightSystem first = system(mesh_, seen);
-  const Eigen::VectorXd kept_step = first.step(keeps_outlines, longest_m);
-  const Eigen::VectorXd whole_step = first.step(whole, longest_m);
-  const Attempt kept = attempt(kept_step, keeps_outlines);
+  const auto attempt_from_given = [&](const HeightPrior& prior) {
+    field_.heights() = none;
+    field_.heights() = first.step(prior, static_cast<double>(texel_m_));
+    return attempt(prior);
+  };
+
+  const Attempt kept = attempt_from_given(keeps_outlines);
   Attempt best = kept.is_below(given, kLeastFall) ? kept : given;
-  if (outlines_ == Outlines::stay) return outcome(given.residual, best, kept, first.seen());
-  const Attempt moved = attempt(whole_step, whole);
-  if (moved.is_below(best, kClearFall)) {
-    const Attempt further = attempt(moved.heights, details);
-    best = further.is_below(moved, kLeastFall) ? further : moved;
+  if (outlines_ == Outlines::may_move) {
+    const Attempt whole = attempt_from_given({kStiffSlope, none});
+    if (whole.is_below(best, kClearFall)) {
+      field_.heights() = whole.heights;
+      const Attempt details = attempt({kSlope, none});
+      best = details.is_below(whole, kLeastFall) ? details : whole;
+    }
   }
   return outcome(given.residual, best, kept, first.seen());
 }
