@@ -72,6 +72,21 @@ nlohmann::ordered_json board_json(const std::optional<capture::BoardRefinement>&
           {"median_shift_mm", 1000 * board->median_shift_m}};
 }
 
+nlohmann::ordered_json placement_json(const std::optional<pipeline::MeshPlacement>& placement) {
+  if (!placement) return nullptr;
+  const Eigen::Vector3d shift_mm = 1000 * placement->shift_m;
+  return {{"shift_mm", {shift_mm.x(), shift_mm.y(), shift_mm.z()}},
+          {"growth", placement->growth},
+          {"residual_change", placement->residual_change}};
+}
+
+std::string placement_text(const pipeline::MeshPlacement& placement) {
+  return fmt::format(
+      "mesh     placed: {:.2f} mm aside, {:+.2f} % of its size, residual on check views {:+.1f} "
+      "%\n",
+      1000 * placement.shift_m.norm(), 100 * placement.growth, 100 * placement.residual_change);
+}
+
 nlohmann::ordered_json mesh_json(const std::optional<pipeline::MeshRefinement>& mesh) {
   if (!mesh) return nullptr;
   return {{"accepted", mesh->is_accepted},
@@ -183,6 +198,7 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
           {"pose_refinement",
            {{"refined", frames.refined_px.size()}, {"motion_px", median_of(frames.refined_px)}}},
           {"board_refinement", board_json(report.board)},
+          {"mesh_placement", placement_json(report.placement)},
           {"mesh_refinement", mesh_json(report.mesh)},
           {"exposure", exposure_json(frames.gains)},
           {"levelled_by_paper", report.is_levelled},
@@ -200,6 +216,7 @@ nlohmann::ordered_json to_json(const ReplayReport& report) {
 
 std::string to_text(const ReplayReport& report) {
   std::string text = frames_text(report.frames);
+  if (report.placement) text += placement_text(*report.placement);
   if (report.mesh) text += mesh_text(*report.mesh);
   text += model_text(report);
   if (!report.fit.choice.empty()) text += fmt::format("         {}\n", report.fit.choice);

@@ -9,6 +9,7 @@
 #include "pipeline/evidence/finding.h"
 #include "pipeline/frame_statistics.h"
 #include "pipeline/mesh_heights.h"
+#include "pipeline/mesh_placement.h"
 
 #include <nlohmann/json.hpp>
 
@@ -33,6 +34,7 @@ struct ReplayReport {
   std::size_t coefficients = 0;
   std::size_t model_bytes = 0;
   std::optional<capture::BoardRefinement> board;          ///< where the tags were refined
+  std::optional<pipeline::MeshPlacement> placement;       ///< where the mesh was put right
   std::optional<pipeline::MeshRefinement> mesh;           ///< where it was to be refined
   std::optional<evaluation::EvaluationSummary> held_out;  ///< of the fitted representation
   std::optional<evaluation::EvaluationSummary>

@@ -28,7 +28,7 @@ namespace {
 constexpr const char* kMean = "mean";
 constexpr const char* kVertexPatches = "sparse";
 constexpr const char* kTextured = "detail";
-constexpr std::size_t kFewestRefiningViews = 20;  // of fewer, gloss may pass for a height
+constexpr std::size_t kFewestMeasuringViews = 20;  // of fewer, gloss may pass for a height
 
 /// For work that nobody asked for: how far it has come, and nothing of what it leaves undone.
 class WithoutNotes : public ProgressSink {
@@ -65,8 +65,9 @@ struct Reconstruction::Impl {
   Impl(ReconstructionInputs inputs, const ReconstructionOptions& wanted, ProgressSink& sink);
 
   core::Mesh read_mesh(ProgressSink& sink);
+  [[nodiscard]] bool may_measure_mesh() const;
   bool may_refine_mesh();
-  std::optional<MeshRefinement> refine_mesh(ProgressSink& sink);
+  void measure_mesh(ProgressSink& sink);
   core::Mesh patch_mesh();
   void look_at_sides(const TrackedFrame& tracked, ProgressSink& sink);
   double texel_size_m(const core::Mesh& surface) const;
@@ -87,6 +88,7 @@ struct Reconstruction::Impl {
   core::Mesh object_mesh;
   SessionScene scene;
   std::optional<double> texel_m;  ///< for the mesh as given, where that was asked for
+  std::optional<MeshPlacement> placement;
   std::optional<MeshRefinement> refinement;
   core::Mesh mesh;
   std::vector<Eigen::Isometry3d> first_poses;  ///< of a live recording: which side do they see
@@ -118,12 +120,11 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
       board(refine_board(session, options, sink)),
       object_mesh(read_mesh(sink)),
       scene(session, object_mesh, options.frames.pose_source, sink),
-      refinement(refine_mesh(sink)),
-      mesh(patch_mesh()),
-      observer(std::make_unique<ViewObserver>(
-          mesh, make_visibility(inputs.make_visibility, mesh, options.threads), options.limits,
-          options.threads)),
       visibility(inputs.make_visibility) {
+  if (may_measure_mesh()) measure_mesh(sink);
+  mesh = patch_mesh();
+  observer = std::make_unique<ViewObserver>(
+      mesh, make_visibility(visibility, mesh, options.threads), options.limits, options.threads);
   if (asks_texel_size(options.representation, options.fit)) {
     choose_texels();
   }
@@ -146,6 +147,7 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
                 FrameCorrections(session, &object_mesh, options.threads));
   evidence.emplace(session, object_mesh, mesh,
                    board ? board->board : tag_board(session, options.frames.pose_source));
+  if (placement) evidence->note(placement->finding());
   stage.emplace(FitStage::Parts{
       .session = session,
       .mesh = mesh,
@@ -175,29 +177,35 @@ core::Mesh Reconstruction::Impl::read_mesh(ProgressSink& sink) {
   return read;
 }
 
+/// Where nobody said: only where a texture would be misplaced on it.
+bool Reconstruction::Impl::may_measure_mesh() const {
+  if (is_live || options.refine_mesh) return !is_live && *options.refine_mesh;
+  return options.representation == kTextured &&
+         (options.patches == Patches::automatic || options.patches == Patches::detail);
+}
+
 /// Where nobody said: only where print between the vertices could show that they lie wrong.
 bool Reconstruction::Impl::may_refine_mesh() {
   constexpr double coarse = 4;  // texels for each vertex; a coarse mesh has 10 to 30, temple 3
-  if (is_live || options.refine_mesh) return !is_live && *options.refine_mesh;
-  const bool has_texture =
-      options.representation == kTextured &&
-      (options.patches == Patches::automatic || options.patches == Patches::detail);
-  if (!has_texture) return false;
+  if (options.refine_mesh) return true;
   texel_m = texel_size_m(object_mesh);
   return texels_per_vertex(*texel_m, object_mesh) >= coarse;
 }
 
-/// Reads the recording once for it, before the run.
-std::optional<MeshRefinement> Reconstruction::Impl::refine_mesh(ProgressSink& sink) {
-  if (!may_refine_mesh()) return std::nullopt;
-  WithoutNotes unasked(sink);
+/// Reads the recording once for it, before the run: is the mesh as large as the object and at its
+/// place, and do its vertices lie on it?
+void Reconstruction::Impl::measure_mesh(ProgressSink& sink) {
   PoseStage stills(capture::open_frames(session, options.frames.start, options.frames.end),
                    pose_estimator(), FrameCorrections(session, &object_mesh, options.threads));
-  auto refined = refine_mesh_heights(session, object_mesh, options.frames, stills, options.threads,
-                                     options.refine_mesh ? sink : unasked);
+  const auto images = read_stills(session, options.frames, stills, sink);
   const bool is_asked = options.refine_mesh.has_value();
-  const bool tells = refined.views + refined.check_views >= kFewestRefiningViews;
-  return is_asked || tells ? std::optional(std::move(refined)) : std::nullopt;
+  if (!is_asked && images.size() < kFewestMeasuringViews) return;
+  placement = place_mesh(object_mesh, images, options.threads, sink);
+  if (placement) object_mesh = placement->mesh;
+  if (!may_refine_mesh()) return;
+  WithoutNotes unasked(sink);
+  refinement = refine_mesh_heights(object_mesh, images, fitting::heights::Outlines::may_move,
+                                   options.threads, is_asked ? sink : unasked);
 }
 
 /// Subdivided to the images' resolution when patches are texels.
@@ -388,6 +396,10 @@ double Reconstruction::finish_cpu_ms() const {
 
 const std::optional<capture::BoardRefinement>& Reconstruction::board_refinement() const {
   return impl_->board;
+}
+
+const std::optional<MeshPlacement>& Reconstruction::mesh_placement() const {
+  return impl_->placement;
 }
 
 const std::optional<MeshRefinement>& Reconstruction::mesh_refinement() const {

@@ -12,6 +12,7 @@
 #include "pipeline/fit_stage.h"
 #include "pipeline/frame_statistics.h"
 #include "pipeline/mesh_heights.h"
+#include "pipeline/mesh_placement.h"
 #include "pipeline/options.h"
 #include "pipeline/pose_stage.h"
 #include "pipeline/progress_sink.h"
@@ -69,7 +70,7 @@ class Reconstruction {
   /// The surface that the light field lies on: the session's mesh, refined where that was asked for
   /// and accepted, subdivided for texel patches.
   [[nodiscard]] const core::Mesh& mesh() const;
-  /// The session's mesh as it is seen, before any refinement or subdivision.
+  /// The session's mesh as it is seen, at its place, before any refinement or subdivision.
   [[nodiscard]] const core::Mesh& object_mesh() const;
   [[nodiscard]] const ReconstructionOptions& options() const;
   [[nodiscard]] const fitting::LightField& light_field() const;
@@ -82,6 +83,8 @@ class Reconstruction {
   [[nodiscard]] const core::StageTimer& times() const;
   [[nodiscard]] double finish_cpu_ms() const;  ///< CPU time of what the fit put off to the end
   [[nodiscard]] const std::optional<capture::BoardRefinement>& board_refinement() const;
+  /// Nothing where the mesh was not measured (options.refine_mesh) or is right.
+  [[nodiscard]] const std::optional<MeshPlacement>& mesh_placement() const;
   /// Nothing where it was not tried (options.refine_mesh).
   [[nodiscard]] const std::optional<MeshRefinement>& mesh_refinement() const;
 

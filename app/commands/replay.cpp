@@ -103,6 +103,7 @@ ReplayReport describe(const ReplayOptions& options, const Reconstruction& fitted
                       .coefficients = light_field.coefficient_count(),
                       .model_bytes = std::filesystem::file_size(options.output),
                       .board = fitted.board_refinement(),
+                      .placement = fitted.mesh_placement(),
                       .mesh = fitted.mesh_refinement(),
                       .held_out = {},
                       .held_out_mean = {},

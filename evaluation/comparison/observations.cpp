@@ -9,12 +9,15 @@
 #include "pipeline/hold_out.h"
 #include "pipeline/light/session_light.h"
 #include "pipeline/mesh_heights.h"
+#include "pipeline/mesh_placement.h"
+#include "pipeline/mesh_stills.h"
 #include "pipeline/observation_replay.h"
 #include "pipeline/pose_frames.h"
 #include "pipeline/session_mesh.h"
 #include "pipeline/session_parts.h"
 #include "pipeline/session_readout.h"
 
+#include <optional>
 #include <utility>
 
 namespace sheen::evaluation {
@@ -24,22 +27,30 @@ pipeline::ViewObserver make_observer(const core::Mesh& mesh, int threads) {
   return {mesh, core::make_raster_visibility(mesh, threads), {}, threads};
 }
 
-/// Moves the mesh's vertices where its print confirms it, by the frames that are fitted.
-void refine(pipeline::FrameChoice choice, int threads, pipeline::ProgressSink& sink,
-            Observations& observations) {
+/// Puts the mesh and its vertices right where its print confirms it, by the frames that are fitted.
+std::optional<pipeline::MeshPlacement> refine(pipeline::FrameChoice choice, int threads,
+                                              pipeline::ProgressSink& sink,
+                                              Observations& observations) {
   if (observations.has_own_held_out) choice.hold_out = 0;
   const capture::Session& session = observations.session;
   pipeline::PoseStage stills(
       capture::open_frames(session, choice.start, choice.end),
       pipeline::make_pose_estimator(session, choice.pose_source, choice.gate),
       pipeline::FrameCorrections(session, &observations.mesh, threads));
+  const auto images = pipeline::read_stills(session, choice, stills, sink);
+  auto placement = pipeline::place_mesh(observations.mesh, images, threads, sink);
+  if (placement) observations.mesh = placement->mesh;
   observations.mesh =
-      pipeline::refine_mesh_heights(session, observations.mesh, choice, stills, threads, sink).mesh;
+      pipeline::refine_mesh_heights(observations.mesh, images, fitting::heights::Outlines::may_move,
+                                    threads, sink)
+          .mesh;
+  return placement;
 }
 
 /// Poses and samples every frame that is not held out; those that are go to the observations, too.
-void observe_frames(const pipeline::FrameChoice& choice, int threads, pipeline::ProgressSink& sink,
-                    Observations& observations) {
+void observe_frames(const pipeline::FrameChoice& choice,
+                    const std::optional<pipeline::MeshPlacement>& placement, int threads,
+                    pipeline::ProgressSink& sink, Observations& observations) {
   const capture::Session& session = observations.session;
   const pipeline::HoldOut hold_out{observations.has_own_held_out ? 0 : choice.hold_out};
   pipeline::PoseStage poses(capture::open_frames(session, choice.start, choice.end),
@@ -51,6 +62,7 @@ void observe_frames(const pipeline::FrameChoice& choice, int threads, pipeline::
   pipeline::SessionScene scene(session, observations.mesh, choice.pose_source, sink);
   pipeline::CaptureEvidence evidence(session, observations.mesh, observations.mesh,
                                      pipeline::tag_board(session, choice.pose_source));
+  if (placement) evidence.note(placement->finding());
   pipeline::for_each_frame(poses, threads > 1, [&](pipeline::TrackedFrame& tracked) {
     const auto posed = frames.count(tracked);
     sink.progress({"observing", frames.frames_read});
@@ -98,8 +110,9 @@ Observations observe_session(const std::filesystem::path& folder,
                          pipeline::probe_poses(observations.session, choice), sink);
   const auto own_views = folder / "held_out";
   observations.has_own_held_out = std::filesystem::exists(own_views / "session.json");
-  if (refine_mesh) refine(choice, threads, sink, observations);
-  observe_frames(choice, threads, sink, observations);
+  std::optional<pipeline::MeshPlacement> placement;
+  if (refine_mesh) placement = refine(choice, threads, sink, observations);
+  observe_frames(choice, placement, threads, sink, observations);
   observations.held_out_session = observations.session;
   if (observations.has_own_held_out) {
     observations.held_out_session = capture::open_session(own_views);

@@ -122,7 +122,7 @@ void judge_models(const std::filesystem::path& folder, int threads, render::Cont
                   StressRow& row) {
   Notes sink;
   try {
-    const Observations observations = observe_session(folder, {}, false, threads, sink);
+    const Observations observations = observe_session(folder, {}, true, threads, sink);
     for (const Candidate& candidate :
          candidates_named({kStressCandidates.begin(), kStressCandidates.end()})) {
       // In the order of the table, which is not the registry's.

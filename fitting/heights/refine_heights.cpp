@@ -20,9 +20,6 @@ constexpr std::size_t kMostTexels = std::size_t{1} << 21;
 constexpr double kOutline_px = 0.5;
 constexpr double kSlope = 0.1;        ///< of details
 constexpr double kStiffSlope = 0.03;  ///< of a shape that is wrong as a whole
-/// Fall of the residual for which outlines are let go. What gloss and poses make of right meshes
-/// stays below a third of it.
-constexpr double kClearFall = 0.025;
 
 class Refinement {
  public:
@@ -42,6 +39,7 @@ class Refinement {
         edges_(neighbourhood_edges(field_, static_cast<double>(texel_m))) {}
 
   HeightRefinement run();
+  double residual_as_given();
 
  private:
   struct Attempt {
@@ -166,6 +164,12 @@ Refinement::Attempt Refinement::attempt(const HeightPrior& prior) {
   return {field_.heights(), residual(seen)};
 }
 
+double Refinement::residual_as_given() {
+  SeenTexels seen(mesh_, atlas_, surface_, threads_);
+  look(seen);
+  return residual(seen);
+}
+
 // A mesh of which only details are wrong has right outlines. They are let go where that is clearly
 // better, first for the shape as a whole and only then for its details: what gloss and errors of
 // poses pass for are details.
@@ -224,6 +228,14 @@ HeightRefinement refine_heights(const core::Mesh& mesh, std::span<const PosedIma
                                 const std::function<void(int, int)>& progress) {
   if (views.size() < 2 || check_views.empty() || mesh.triangles.empty()) return {.mesh = mesh};
   return Refinement(mesh, views, check_views, texel_m, outlines, threads, progress).run();
+}
+
+double print_residual(const core::Mesh& mesh, std::span<const PosedImage> views,
+                      std::span<const PosedImage> check_views, float texel_m, int threads) {
+  if (views.empty() || check_views.empty() || mesh.triangles.empty()) return 0;
+  const std::function<void(int, int)> untold;
+  return Refinement(mesh, views, check_views, texel_m, Outlines::stay, threads, untold)
+      .residual_as_given();
 }
 
 }  // namespace sheen::fitting::heights

@@ -33,6 +33,10 @@ enum class Outlines { stay, may_move };
 /// The residual must fall by this part for heights to be accepted.
 inline constexpr double kLeastFall = 0.015;
 
+/// Fall of the residual for which outlines are let go. What gloss and poses make of right meshes
+/// stays below a third of it.
+inline constexpr double kClearFall = 0.025;
+
 /// Estimates heights from `views` and accepts them when the residual on `check_views`, which have
 /// no part in the estimate, falls by at least kLeastFall. `texel_m` > 0 is what a pixel covers on
 /// the surface. Positions that fewer than two views show do not move. Calls `progress(done, all)`
@@ -41,5 +45,9 @@ HeightRefinement refine_heights(const core::Mesh& mesh, std::span<const PosedIma
                                 std::span<const PosedImage> check_views, float texel_m,
                                 Outlines outlines, int threads,
                                 const std::function<void(int done, int all)>& progress = {});
+
+/// HeightRefinement::residual_before alone.
+double print_residual(const core::Mesh& mesh, std::span<const PosedImage> views,
+                      std::span<const PosedImage> check_views, float texel_m, int threads);
 
 }  // namespace sheen::fitting::heights

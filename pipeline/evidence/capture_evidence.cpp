@@ -121,6 +121,13 @@ std::vector<Finding> CaptureEvidence::drifts(const LightEvidence::Verdict& verdi
                                  "replay of the session levels them"}};
 }
 
+std::vector<Finding> CaptureEvidence::misplaced() const {
+  std::vector<Finding> findings;
+  if (misplaced_) findings.push_back(*misplaced_);
+  append(outline_.findings(), findings);
+  return findings;
+}
+
 /// Corners do not fit, the object is not where poses and mesh put it, or nowhere in the images.
 bool CaptureEvidence::are_poses_doubtful(const std::vector<Finding>& corners,
                                          const std::vector<Finding>& misplaced) const {
@@ -128,13 +135,13 @@ bool CaptureEvidence::are_poses_doubtful(const std::vector<Finding>& corners,
 }
 
 std::optional<capture::IdFault> CaptureEvidence::board_fault() const {
-  if (!tags_ || !are_poses_doubtful(corners_->findings(), outline_.findings())) return std::nullopt;
+  if (!tags_ || !are_poses_doubtful(corners_->findings(), misplaced())) return std::nullopt;
   return tags_->fault();
 }
 
 std::vector<Finding> CaptureEvidence::faults() const {
   const std::vector<Finding> corners = corners_ ? corners_->findings() : std::vector<Finding>{};
-  const std::vector<Finding> misplaced = outline_.findings();
+  const std::vector<Finding> misplaced = this->misplaced();
   std::vector<Finding> faults;
   if (tags_ && are_poses_doubtful(corners, misplaced)) {
     append(tags_->findings(!misplaced.empty()), faults);

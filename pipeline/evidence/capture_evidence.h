@@ -17,6 +17,7 @@
 #include <Eigen/Geometry>
 
 #include <optional>
+#include <utility>
 #include <vector>
 
 namespace sheen::pipeline {
@@ -36,6 +37,9 @@ class CaptureEvidence {
   void look_at(const capture::Frame& frame, const Eigen::Isometry3d& camera_from_board,
                const core::Observation& observation);
 
+  /// What was found about the mesh and put right before the first frame.
+  void note(Finding misplaced) { misplaced_ = std::move(misplaced); }
+
   /// What can be said so far of a recording that goes on.
   [[nodiscard]] std::vector<Finding> faults() const;
 
@@ -52,6 +56,7 @@ class CaptureEvidence {
   [[nodiscard]] double grain() const;
   [[nodiscard]] std::vector<Finding> drifts(const LightEvidence::Verdict& verdict) const;
   [[nodiscard]] std::optional<Finding> coverage() const;
+  [[nodiscard]] std::vector<Finding> misplaced() const;
   [[nodiscard]] bool are_poses_doubtful(const std::vector<Finding>& corners,
                                         const std::vector<Finding>& misplaced) const;
 
@@ -60,6 +65,7 @@ class CaptureEvidence {
   std::optional<CornerEvidence> corners_;
   std::optional<TagEvidence> tags_;
   OutlineEvidence outline_;
+  std::optional<Finding> misplaced_;  ///< the mesh as it was given
   PrintEvidence print_;
   LightEvidence light_;
   DepthEvidence depth_;

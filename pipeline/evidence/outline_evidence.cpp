@@ -17,7 +17,7 @@
 namespace sheen::pipeline {
 namespace {
 
-constexpr std::size_t kMostOutlineViews = 24, kOutlineSpacing = 4;
+constexpr std::size_t kMostOutlineViews = 24;
 constexpr int kColourPixels = 3000;  // from which a view's colours are learnt
 constexpr double kReach = 0.12;      // of the object's radius: how far off an outline may be
 constexpr double kLeastReach_px = 6, kMostReach_px = 40;
@@ -82,8 +82,8 @@ System system_of(const View& view, double scale_px,
 
 }  // namespace
 
-OutlineEvidence::OutlineEvidence(const core::Mesh& mesh)
-    : contours_(mesh), views_(kMostOutlineViews, kOutlineSpacing) {
+OutlineEvidence::OutlineEvidence(const core::Mesh& mesh, std::size_t spacing)
+    : contours_(mesh), views_(kMostOutlineViews, spacing) {
   radius_m_ = contours_.bounds().diagonal().norm() / 2;
 }
 
@@ -294,7 +294,7 @@ std::vector<Finding> OutlineEvidence::findings() const {
     return findings;
   }
   if (!placed) return findings;
-  const double growth_m = placed->unknowns[6];
+  const double growth_m = placed->growth_m();
   if (is_seen(std::abs(growth_m), placed->growth_sigma_m, kSeenGrowth)) {
     findings.push_back(
         {"mesh-size",
@@ -302,7 +302,7 @@ std::vector<Finding> OutlineEvidence::findings() const {
                      "the mesh's scale and the size of the tags",
                      100 * std::abs(growth_m) / radius_m_, growth_m > 0 ? "larger" : "smaller")});
   }
-  const double shift_m = placed->unknowns.head<3>().norm();
+  const double shift_m = placed->shift_m().norm();
   if (is_seen(shift_m, placed->shift_sigma_m, kSeenShift)) {
     findings.push_back(
         {"mesh-place",

@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 #include <opencv2/core/mat.hpp>
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -21,8 +22,9 @@ namespace sheen::pipeline {
 /// on, and a mesh of another shape, or turned, cannot be placed so that it fits.
 class OutlineEvidence {
  public:
-  /// `mesh` must outlive this.
-  explicit OutlineEvidence(const core::Mesh& mesh);
+  /// `mesh` must outlive this. Of the frames that come every `spacing`-th is looked at, and of many
+  /// fewer.
+  explicit OutlineEvidence(const core::Mesh& mesh, std::size_t spacing = 4);
 
   /// `image` is CV_8UC3, BGR.
   void look_at(int frame_index, const cv::Mat& image, const core::CameraModel& camera,
@@ -50,6 +52,8 @@ class OutlineEvidence {
   /// One motion and growth of the object for all views.
   struct Misplacement {
     Vector unknowns = Vector::Zero();
+    [[nodiscard]] Eigen::Vector3d shift_m() const { return unknowns.head<3>(); }
+    [[nodiscard]] double growth_m() const { return unknowns[6]; }  ///< at the radius
     double shift_sigma_m = 0;   ///< of the shift, worst direction, from the views' disagreement
     double growth_sigma_m = 0;  ///< of the growth at the radius
     double residual_px = 0;     ///< median distance that is left

@@ -327,7 +327,8 @@ pipeline::MeshRefinement refine_recording(const std::vector<PosedImage>& views, 
   pipeline::FrameChoice choice;
   choice.hold_out = hold_out;
   pipeline::ProgressSink sink;
-  return pipeline::refine_mesh_heights(session, square(32), choice, poses, 1, sink);
+  return pipeline::refine_mesh_heights(
+      square(32), pipeline::read_stills(session, choice, poses, sink), Outlines::may_move, 1, sink);
 }
 
 // Held-out frames have no part: with them turned into their negatives not a bit changes. That they

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: MIT
+#include "pipeline/mesh_placement.h"
+
+#include "core/mesh/bounds.h"
+#include "fitting/heights/refine_heights.h"
+#include "pipeline/evidence/outline_evidence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace sheen::pipeline {
+namespace {
+
+constexpr int kRounds = 2;  // the first finds most of it
+// Smaller ones are not worth asking the print, which decides.
+constexpr double kLeast_px = 0.25, kLeastSigmas = 4;
+// Of the radius: outlines of right meshes look at most .4 % larger or smaller. Print tells little
+// of a mesh that is too small, whose rim lies on the object in all views.
+constexpr double kSureGrowth = 0.007, kSureSigmas = 8;
+constexpr double kAgainst = 0.01;  // rise of the print's residual that contradicts it
+
+bool is_clear(double size_m, double sigma_m, double px_per_m) {
+  return size_m * px_per_m > kLeast_px && size_m > kLeastSigmas * sigma_m;
+}
+
+OutlineEvidence outlines_of(const core::Mesh& mesh, const std::vector<PosedImage>& images,
+                            ProgressSink& sink) {
+  OutlineEvidence outlines(mesh, 1);
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    const auto index = static_cast<int>(i);
+    sink.progress({"comparing outlines", index, static_cast<int>(images.size())});
+    outlines.look_at(index, images[i].image, *images[i].camera, images[i].camera_from_object);
+  }
+  return outlines;
+}
+
+/// An object that moved on the way is in two places, and the middle between them is none.
+bool moved_on_the_way(const OutlineEvidence& outlines, double misplaced_m) {
+  const auto jump = outlines.jump();
+  return jump && jump->shift_m.norm() > misplaced_m &&
+         is_clear(jump->shift_m.norm(), jump->sigma_m, outlines.px_per_m());
+}
+
+/// Moves the mesh by what is clear; nothing where nothing is, or where it is no matter of the mesh.
+bool move(const OutlineEvidence& outlines, MeshPlacement& placement) {
+  const auto found = outlines.misplacement();
+  if (!found) return false;
+  const double scale = outlines.px_per_m();
+  const bool shifts = is_clear(found->shift_m().norm(), found->shift_sigma_m, scale);
+  const bool grows = is_clear(std::abs(found->growth_m()), found->growth_sigma_m, scale);
+  const Eigen::Vector3d shift_m = shifts ? found->shift_m() : Eigen::Vector3d::Zero();
+  const double growth_m = grows ? found->growth_m() : 0;
+  if (!shifts && !grows) return false;
+  if (moved_on_the_way(outlines, std::max(shift_m.norm(), std::abs(growth_m)))) return false;
+
+  const double factor = 1 + growth_m / outlines.radius_m();
+  const Eigen::Vector3d middle = core::bounds_of(placement.mesh).center().cast<double>();
+  for (Eigen::Vector3f& position : placement.mesh.positions) {
+    position = (middle + factor * (position.cast<double>() - middle) + shift_m).cast<float>();
+  }
+  placement.shift_m += shift_m;
+  placement.growth = (1 + placement.growth) * factor - 1;
+  return true;
+}
+
+double print_residual(const core::Mesh& mesh, const DividedStills& stills, int threads) {
+  return fitting::heights::print_residual(mesh, stills.views, stills.check_views,
+                                          stills.texel_m(mesh), threads);
+}
+
+}  // namespace
+
+std::optional<MeshPlacement> place_mesh(const core::Mesh& mesh,
+                                        const std::vector<PosedImage>& images, int threads,
+                                        ProgressSink& sink) {
+  MeshPlacement placement{.mesh = mesh};
+  double growth_sigma = 0;
+  for (int round = 0; round < kRounds; ++round) {
+    const OutlineEvidence outlines = outlines_of(placement.mesh, images, sink);
+    if (!move(outlines, placement)) break;
+    if (round == 0) growth_sigma = outlines.misplacement()->growth_sigma_m / outlines.radius_m();
+  }
+  if (placement.shift_m.isZero(0) && placement.growth == 0) return std::nullopt;
+  const DividedStills stills(images);
+  const double before = print_residual(mesh, stills, threads);
+  const double after = print_residual(placement.mesh, stills, threads);
+  if (!(before > 0)) return std::nullopt;
+  placement.residual_change = after / before - 1;
+  const bool is_confirmed = placement.residual_change <= -fitting::heights::kClearFall;
+  const double growth = std::abs(placement.growth);
+  const bool is_sure = growth > kSureGrowth && growth > kSureSigmas * growth_sigma &&
+                       placement.residual_change < kAgainst;
+  if (!is_confirmed && !is_sure) return std::nullopt;
+  return placement;
+}
+
+Finding MeshPlacement::finding() const {
+  const double radius_m = static_cast<double>(core::bounds_of(mesh).diagonal().norm()) / 2;
+  const double shift_mm = 1000 * shift_m.norm();
+  const double percent = 100 * std::abs(growth);
+  if (std::abs(growth) * radius_m > shift_m.norm()) {
+    return {"mesh-size",
+            fmt::format("the object is {:.1f} % {} than its mesh, by its outlines in all views: "
+                        "the light field is fitted to the mesh made so and moved by "
+                        "{:.1f} mm; check the mesh's scale and the size of the tags",
+                        percent, growth > 0 ? "larger" : "smaller", shift_mm)};
+  }
+  return {"mesh-place",
+          fmt::format("the object stands {:.1f} mm beside its mesh, by its outlines in all views: "
+                      "the light field is fitted to the mesh moved there and made "
+                      "{:.1f} % {}; sheen register finds where it stands",
+                      shift_mm, percent, growth > 0 ? "larger" : "smaller")};
+}
+
+}  // namespace sheen::pipeline

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "core/mesh/mesh.h"
+#include "pipeline/evidence/finding.h"
+#include "pipeline/mesh_stills.h"
+#include "pipeline/progress_sink.h"
+
+#include <Eigen/Core>
+
+#include <optional>
+#include <vector>
+
+namespace sheen::pipeline {
+
+/// A mesh of another size than the object or beside its place, put right. docs/algorithm.md, 12.
+struct MeshPlacement {
+  core::Mesh mesh;                                    ///< put right
+  Eigen::Vector3d shift_m = Eigen::Vector3d::Zero();  ///< of its middle, object frame
+  double growth = 0;                                  ///< 0.01: made one per cent larger
+  double residual_change = 0;  ///< of its print on check views, a part: -0.33 is a third less
+
+  /// Says what was found, and what the user should look at.
+  [[nodiscard]] Finding finding() const;
+};
+
+/// Places `mesh` by the object's outlines in the images, where that is clearly another place or
+/// size and where its print agrees better there: the difference of views that are left out to the
+/// mean picture of the others falls by fitting::heights::kClearFall. Nothing where it stays as it
+/// is.
+std::optional<MeshPlacement> place_mesh(const core::Mesh& mesh,
+                                        const std::vector<PosedImage>& images, int threads,
+                                        ProgressSink& sink);
+
+}  // namespace sheen::pipeline
