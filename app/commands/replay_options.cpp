@@ -186,13 +186,14 @@ void add_replay_options(Command command, ReplayOptions& options) {
                "Refine where the tags lie from the whole recording before posing frames");
   Option refine_mesh = command.switch_on(
       "--refine-mesh", [&fit] { fit.refine_mesh = true; },
-      "Move the mesh's vertices along their normals to where the pictures of its print agree; kept "
-      "as it is unless that shows on views left out of it. Default where a texture is fitted to a "
-      "mesh much coarser than its texels");
+      "Put a mesh of another size or beside its place right by the object's outlines, and move its "
+      "vertices along their normals to where the pictures of its print agree; kept as it is unless "
+      "that shows on views left out of it. Default where a texture is fitted: the place, and "
+      "vertices where the mesh is much coarser than the texels");
   command
       .switch_on(
           "--no-refine-mesh", [&fit] { fit.refine_mesh = false; },
-          "Leave the mesh's vertices where they are")
+          "Leave the mesh where it is")
       .excludes(refine_mesh);
   command
       .option("--write-mesh", options.mesh_output,
