@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
 namespace sheen::pipeline {
@@ -97,22 +98,21 @@ std::optional<MeshPlacement> place_mesh(const core::Mesh& mesh,
   return placement;
 }
 
-Finding MeshPlacement::finding() const {
+Finding MeshPlacement::finding(std::string_view outcome) const {
   const double radius_m = static_cast<double>(core::bounds_of(mesh).diagonal().norm()) / 2;
-  const double shift_mm = 1000 * shift_m.norm();
-  const double percent = 100 * std::abs(growth);
+  const std::string aside = fmt::format("{:.1f} mm beside", 1000 * shift_m.norm());
+  const std::string size =
+      fmt::format("{:.1f} % {} than", 100 * std::abs(growth), growth > 0 ? "larger" : "smaller");
   if (std::abs(growth) * radius_m > shift_m.norm()) {
     return {"mesh-size",
-            fmt::format("the object is {:.1f} % {} than its mesh, by its outlines in all views: "
-                        "the light field is fitted to the mesh made so and moved by "
-                        "{:.1f} mm; check the mesh's scale and the size of the tags",
-                        percent, growth > 0 ? "larger" : "smaller", shift_mm)};
+            fmt::format("the object is {} its mesh{}, by its outlines in all views: {}; check the "
+                        "mesh's scale and the size of the tags",
+                        size, shift_m.isZero(0) ? "" : ", " + aside + " it", outcome)};
   }
   return {"mesh-place",
-          fmt::format("the object stands {:.1f} mm beside its mesh, by its outlines in all views: "
-                      "the light field is fitted to the mesh moved there and made "
-                      "{:.1f} % {}; sheen register finds where it stands",
-                      shift_mm, percent, growth > 0 ? "larger" : "smaller")};
+          fmt::format("the object stands {} its mesh{}, by its outlines in all views: "
+                      "{}; sheen register finds where it stands",
+                      aside, growth == 0 ? "" : ", " + size + " it", outcome)};
 }
 
 }  // namespace sheen::pipeline

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <optional>
+#include <string_view>
 #include <vector>
 
 namespace sheen::pipeline {
@@ -20,9 +21,12 @@ struct MeshPlacement {
   double growth = 0;                                  ///< 0.01: made one per cent larger
   double residual_change = 0;  ///< of its print on check views, a part: -0.33 is a third less
 
-  /// Says what was found, and what the user should look at.
-  [[nodiscard]] Finding finding() const;
+  /// Says what was found, what becomes of it (`outcome`), and what the user should look at.
+  [[nodiscard]] Finding finding(std::string_view outcome) const;
 };
+
+/// Outcome where the light field is fitted to MeshPlacement::mesh.
+inline constexpr std::string_view kIsPutRight = "the light field is fitted to the mesh put there";
 
 /// Places `mesh` by the object's outlines in the images, where that is clearly another place or
 /// size and where its print agrees better there: the difference of views that are left out to the

@@ -2,6 +2,7 @@
 #include "pipeline/mesh_stills.h"
 
 #include "core/mesh/bounds.h"
+#include "pipeline/evidence/corner_evidence.h"
 #include "pipeline/hold_out.h"
 #include "pipeline/texel_size.h"
 
@@ -15,19 +16,19 @@ constexpr std::size_t kMostStills = 64;
 constexpr std::size_t kMostBytes = std::size_t{512} << 20;
 constexpr std::size_t kCheckEvery = 4;
 
-std::size_t most_views(const core::CameraModel& camera) {
+}  // namespace
+
+std::size_t most_stills(const core::CameraModel& camera) {
   const std::size_t bytes = 3 * static_cast<std::size_t>(camera.width_px()) *
                             static_cast<std::size_t>(camera.height_px());
   return std::clamp<std::size_t>(kMostBytes / std::max<std::size_t>(1, bytes), 2, kMostStills);
 }
 
-}  // namespace
-
 // The length need not be known: of the frames that come every stride-th is kept, and when there are
 // too many, every other one of them is dropped.
 std::vector<PosedImage> read_stills(const capture::Session& session, const FrameChoice& choice,
                                     PoseStage& poses, ProgressSink& sink) {
-  const std::size_t most = most_views(session.camera);
+  const std::size_t most = most_stills(session.camera);
   const HoldOut hold_out{choice.hold_out};
   std::vector<PosedImage> images;
   const auto frames = static_cast<std::size_t>(std::max(0, poses.frame_count().value_or(0)));
@@ -48,6 +49,21 @@ std::vector<PosedImage> read_stills(const capture::Session& session, const Frame
     stride *= 2;
   }
   return images;
+}
+
+bool are_poses_sound(const capture::Session& session, const std::optional<capture::Board>& board,
+                     const std::vector<PosedImage>& images, ProgressSink& sink) {
+  if (!board) return true;
+  CornerEvidence corners(*board, session.camera, {}, 1);
+  const Eigen::Isometry3d object_from_board = session.board_from_object.inverse();
+  for (const PosedImage& image : images) {
+    corners.look_at({.image = image.image}, image.camera_from_object * object_from_board, {});
+  }
+  const bool are_sound = corners.findings().empty();
+  if (!are_sound) {
+    sink.note("the tags' corners show that poses are wrong, so the mesh stays as it is");
+  }
+  return are_sound;
 }
 
 DividedStills::DividedStills(const std::vector<PosedImage>& images) {

@@ -16,6 +16,7 @@
 #include "pipeline/session_mesh.h"
 #include "pipeline/session_parts.h"
 #include "pipeline/texel_size.h"
+#include "pipeline/thinned.h"
 
 #include <fmt/format.h>
 
@@ -28,6 +29,7 @@ namespace {
 constexpr const char* kMean = "mean";
 constexpr const char* kVertexPatches = "sparse";
 constexpr const char* kTextured = "detail";
+constexpr std::size_t kMostLiveStills = 40;        // of which half remain at times
 constexpr std::size_t kFewestMeasuringViews = 20;  // of fewer, gloss may pass for a height
 
 /// For work that nobody asked for: how far it has come, and nothing of what it leaves undone.
@@ -66,6 +68,8 @@ struct Reconstruction::Impl {
 
   core::Mesh read_mesh(ProgressSink& sink);
   [[nodiscard]] bool may_measure_mesh() const;
+  void look_at_place(const TrackedFrame& tracked);
+  void tell_place(ProgressSink& sink);
   bool may_refine_mesh();
   void measure_mesh(ProgressSink& sink);
   core::Mesh patch_mesh();
@@ -73,6 +77,7 @@ struct Reconstruction::Impl {
   double texel_size_m(const core::Mesh& surface) const;
   void choose_texels();
   std::unique_ptr<capture::PoseEstimator> pose_estimator() const;
+  [[nodiscard]] std::optional<capture::Board> pose_board() const;
   std::unique_ptr<fitting::Fitter> make_fitter(const std::string& name,
                                                const fitting::OptionValues& values,
                                                fitting::UndoableFitter*& history);
@@ -92,6 +97,7 @@ struct Reconstruction::Impl {
   std::optional<MeshRefinement> refinement;
   core::Mesh mesh;
   std::vector<Eigen::Isometry3d> first_poses;  ///< of a live recording: which side do they see
+  Thinned<PosedImage> live_stills;             ///< of it: is the mesh at its place
   std::unique_ptr<ViewObserver> observer;
   VisibilityFactory visibility;
   std::unique_ptr<fitting::Fitter> fitter;
@@ -120,8 +126,9 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
       board(refine_board(session, options, sink)),
       object_mesh(read_mesh(sink)),
       scene(session, object_mesh, options.frames.pose_source, sink),
+      live_stills(std::min(kMostLiveStills, most_stills(session.camera))),
       visibility(inputs.make_visibility) {
-  if (may_measure_mesh()) measure_mesh(sink);
+  if (!is_live && may_measure_mesh()) measure_mesh(sink);
   mesh = patch_mesh();
   observer = std::make_unique<ViewObserver>(
       mesh, make_visibility(visibility, mesh, options.threads), options.limits, options.threads);
@@ -145,9 +152,8 @@ Reconstruction::Impl::Impl(ReconstructionInputs inputs, const ReconstructionOpti
   if (!is_live) check_stamps(session, options.frames, frame_count);
   poses.emplace(std::move(frames), pose_estimator(),
                 FrameCorrections(session, &object_mesh, options.threads));
-  evidence.emplace(session, object_mesh, mesh,
-                   board ? board->board : tag_board(session, options.frames.pose_source));
-  if (placement) evidence->note(placement->finding());
+  evidence.emplace(session, object_mesh, mesh, pose_board());
+  if (placement) evidence->note(placement->finding(kIsPutRight));
   stage.emplace(FitStage::Parts{
       .session = session,
       .mesh = mesh,
@@ -168,6 +174,11 @@ std::unique_ptr<capture::PoseEstimator> Reconstruction::Impl::pose_estimator() c
                              board ? &board->board : nullptr);
 }
 
+/// Of the tags that give the poses, if they do.
+std::optional<capture::Board> Reconstruction::Impl::pose_board() const {
+  return board ? board->board : tag_board(session, options.frames.pose_source);
+}
+
 /// The session's mesh, its outside towards the cameras.
 core::Mesh Reconstruction::Impl::read_mesh(ProgressSink& sink) {
   core::Mesh read = read_session_mesh(session, sink);
@@ -179,7 +190,7 @@ core::Mesh Reconstruction::Impl::read_mesh(ProgressSink& sink) {
 
 /// Where nobody said: only where a texture would be misplaced on it.
 bool Reconstruction::Impl::may_measure_mesh() const {
-  if (is_live || options.refine_mesh) return !is_live && *options.refine_mesh;
+  if (options.refine_mesh) return *options.refine_mesh;
   return options.representation == kTextured &&
          (options.patches == Patches::automatic || options.patches == Patches::detail);
 }
@@ -199,13 +210,15 @@ void Reconstruction::Impl::measure_mesh(ProgressSink& sink) {
                    pose_estimator(), FrameCorrections(session, &object_mesh, options.threads));
   const auto images = read_stills(session, options.frames, stills, sink);
   const bool is_asked = options.refine_mesh.has_value();
+  WithoutNotes unasked(sink);
+  ProgressSink& notes = is_asked ? sink : unasked;
   if (!is_asked && images.size() < kFewestMeasuringViews) return;
+  if (!are_poses_sound(session, pose_board(), images, notes)) return;
   placement = place_mesh(object_mesh, images, options.threads, sink);
   if (placement) object_mesh = placement->mesh;
   if (!may_refine_mesh()) return;
-  WithoutNotes unasked(sink);
   refinement = refine_mesh_heights(object_mesh, images, fitting::heights::Outlines::may_move,
-                                   options.threads, is_asked ? sink : unasked);
+                                   options.threads, notes);
 }
 
 /// Subdivided to the images' resolution when patches are texels.
@@ -230,6 +243,25 @@ void Reconstruction::Impl::look_at_sides(const TrackedFrame& tracked, ProgressSi
     sink.note(session.mesh.string() +
               ": what is fitted now shows its inside; sheen replay of this session turns it");
   }
+}
+
+/// Nor can it be put right: its images are kept until the recording has ended.
+void Reconstruction::Impl::look_at_place(const TrackedFrame& tracked) {
+  const auto* pose = std::get_if<capture::FramePose>(&tracked.pose);
+  if (!is_live || pose == nullptr || !may_measure_mesh() || !live_stills.is_due()) return;
+  live_stills.add({tracked.frame.image, &session.camera_of(tracked.frame.index),
+                   pose->camera_from_board * session.board_from_object});
+}
+
+void Reconstruction::Impl::tell_place(ProgressSink& sink) {
+  const auto& images = live_stills.items();
+  WithoutNotes unasked(sink);
+  if (images.size() < kFewestMeasuringViews ||
+      !are_poses_sound(session, pose_board(), images, unasked)) {
+    return;
+  }
+  const auto found = place_mesh(object_mesh, images, options.threads, sink);
+  if (found) evidence->note(found->finding("sheen replay of this session puts that right"));
 }
 
 /// What a pixel covers, supposing that the object fills the image where that is not known yet.
@@ -326,6 +358,7 @@ void Reconstruction::run(ProgressSink& sink, FrameListener* listener) {
           impl_->scene.see(pose->camera_from_board);
         }
         impl_->look_at_sides(tracked, sink);
+        impl_->look_at_place(tracked);
         impl_->stage->integrate(tracked);
         impl_->tell_early(sink);
         sink.progress({"fitting", frames.frames_read, impl_->frame_count.value_or(0),
@@ -345,6 +378,7 @@ void Reconstruction::run(ProgressSink& sink, FrameListener* listener) {
   for (const std::string& doubt : doubts_of_stamps(impl_->session, impl_->options.frames, frames)) {
     sink.note(doubt);
   }
+  impl_->tell_place(sink);
   impl_->tell_new(impl_->evidence->findings(), sink);
   impl_->finish();
 }

@@ -38,6 +38,8 @@ std::optional<pipeline::MeshPlacement> refine(pipeline::FrameChoice choice, int 
       pipeline::make_pose_estimator(session, choice.pose_source, choice.gate),
       pipeline::FrameCorrections(session, &observations.mesh, threads));
   const auto images = pipeline::read_stills(session, choice, stills, sink);
+  const auto board = pipeline::tag_board(session, choice.pose_source);
+  if (!pipeline::are_poses_sound(session, board, images, sink)) return std::nullopt;
   auto placement = pipeline::place_mesh(observations.mesh, images, threads, sink);
   if (placement) observations.mesh = placement->mesh;
   observations.mesh =
@@ -62,7 +64,7 @@ void observe_frames(const pipeline::FrameChoice& choice,
   pipeline::SessionScene scene(session, observations.mesh, choice.pose_source, sink);
   pipeline::CaptureEvidence evidence(session, observations.mesh, observations.mesh,
                                      pipeline::tag_board(session, choice.pose_source));
-  if (placement) evidence.note(placement->finding());
+  if (placement) evidence.note(placement->finding(pipeline::kIsPutRight));
   pipeline::for_each_frame(poses, threads > 1, [&](pipeline::TrackedFrame& tracked) {
     const auto posed = frames.count(tracked);
     sink.progress({"observing", frames.frames_read});

@@ -16,7 +16,7 @@
 namespace sheen::pipeline {
 namespace {
 
-constexpr std::size_t kMostCornerViews = 12, kCornerSpacing = 4;
+constexpr std::size_t kMostCornerViews = 12;
 constexpr std::size_t kFewestCorners = 12, kPoseCorners = 4;
 constexpr int kFewestNumbers = 600;  // below it a pattern of three unknowns fits noise
 // Chosen on bench/stress with seed 1 and the recordings named in docs/stability-sessions.md: what a
@@ -54,7 +54,7 @@ std::optional<double> median_of(const std::vector<CornerEvidence::View>& views,
 }  // namespace
 
 CornerEvidence::CornerEvidence(const capture::Board& board, const core::CameraModel& camera,
-                               std::vector<Eigen::Vector3d> object_in_board)
+                               std::vector<Eigen::Vector3d> object_in_board, std::size_t spacing)
     : board_(board),
       camera_(camera),
       changed_{with_change(camera, 0), with_change(camera, 1), with_change(camera, 2),
@@ -62,7 +62,7 @@ CornerEvidence::CornerEvidence(const capture::Board& board, const core::CameraMo
       middle_(Eigen::Vector3d::Zero()),
       object_in_board_(std::move(object_in_board)),
       tracker_(board, camera, capture::BoardTagFinder(board, camera).family()),
-      views_(kMostCornerViews, kCornerSpacing) {
+      views_(kMostCornerViews, spacing) {
   Eigen::AlignedBox3d box;
   for (const auto& [id, tag] : board.tags) {
     for (const Eigen::Vector3d& corner : tag.corners_in_board()) box.extend(corner);

@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -25,9 +26,10 @@ namespace sheen::pipeline {
 /// side of the object, and by blur.
 class CornerEvidence {
  public:
-  /// `object_in_board` are points that enclose the object.
+  /// `object_in_board` are points that enclose the object. Of the frames that come every
+  /// `spacing`-th is looked at, and of many fewer.
   CornerEvidence(const capture::Board& board, const core::CameraModel& camera,
-                 std::vector<Eigen::Vector3d> object_in_board);
+                 std::vector<Eigen::Vector3d> object_in_board, std::size_t spacing = 4);
 
   /// `last` is the pose of the frame before, if that was posed: how the board moves in the image.
   void look_at(const capture::Frame& frame, const Eigen::Isometry3d& camera_from_board,

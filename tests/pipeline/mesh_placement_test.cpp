@@ -81,7 +81,7 @@ TEST_F(PlaceMesh, SizeAndPlaceAreFound) {
         EXPECT_NEAR(placed->growth, 1 / scale - 1, 0.006);
         EXPECT_LT((placed->shift_m + shift_m).norm(), 2.5e-4);
         const bool is_size = std::abs(scale - 1) * kBallRadius_m > shift_m.norm();
-        EXPECT_EQ(placed->finding().cause, is_size ? "mesh-size" : "mesh-place");
+        EXPECT_EQ(placed->finding(kIsPutRight).cause, is_size ? "mesh-size" : "mesh-place");
       }
     }
   }
