@@ -16,20 +16,20 @@ namespace sheen::pipeline {
 namespace {
 
 constexpr int kRounds = 2;  // the first finds most of it
-// Smaller ones are not worth asking the print, which decides.
-constexpr double kLeast_px = 0.25, kLeastSigmas = 4;
-// Of the radius: outlines of right meshes look at most .4 % larger or smaller. Print tells little
-// of a mesh that is too small, whose rim lies on the object in all views.
+// Outlines of right meshes are off by up to .4 % of the radius. Of what is more the print is asked.
+constexpr double kLeast = 0.005, kLeast_px = 0.25, kLeastSigmas = 4;
+// Print tells little of a mesh that is too small, whose rim lies on the object in all views.
 constexpr double kSureGrowth = 0.007, kSureSigmas = 8;
-constexpr double kAgainst = 0.01;  // rise of the print's residual that contradicts it
+constexpr double kAgainst = 0.02;  // rise of the print's residual that contradicts it
 
-bool is_clear(double size_m, double sigma_m, double px_per_m) {
-  return size_m * px_per_m > kLeast_px && size_m > kLeastSigmas * sigma_m;
+bool is_clear(const OutlineEvidence& outlines, double size_m, double sigma_m) {
+  return size_m > kLeast * outlines.radius_m() && size_m * outlines.px_per_m() > kLeast_px &&
+         size_m > kLeastSigmas * sigma_m;
 }
 
 OutlineEvidence outlines_of(const core::Mesh& mesh, const std::vector<PosedImage>& images,
                             ProgressSink& sink) {
-  OutlineEvidence outlines(mesh, 1);
+  OutlineEvidence outlines(mesh, images.size() + 1, 1);
   for (std::size_t i = 0; i < images.size(); ++i) {
     const auto index = static_cast<int>(i);
     sink.progress({"comparing outlines", index, static_cast<int>(images.size())});
@@ -42,20 +42,25 @@ OutlineEvidence outlines_of(const core::Mesh& mesh, const std::vector<PosedImage
 bool moved_on_the_way(const OutlineEvidence& outlines, double misplaced_m) {
   const auto jump = outlines.jump();
   return jump && jump->shift_m.norm() > misplaced_m &&
-         is_clear(jump->shift_m.norm(), jump->sigma_m, outlines.px_per_m());
+         is_clear(outlines, jump->shift_m.norm(), jump->sigma_m);
 }
 
-/// Moves the mesh by what is clear; nothing where nothing is, or where it is no matter of the mesh.
+/// Moves the mesh by what is clear, and on by what has been; false where nothing is, or where it is
+/// no matter of the mesh.
 bool move(const OutlineEvidence& outlines, MeshPlacement& placement) {
   const auto found = outlines.misplacement();
   if (!found) return false;
-  const double scale = outlines.px_per_m();
-  const bool shifts = is_clear(found->shift_m().norm(), found->shift_sigma_m, scale);
-  const bool grows = is_clear(std::abs(found->growth_m()), found->growth_sigma_m, scale);
+  const bool shifts = !placement.shift_m.isZero(0) ||
+                      is_clear(outlines, found->shift_m().norm(), found->shift_sigma_m);
+  const bool grows = placement.growth != 0 ||
+                     is_clear(outlines, std::abs(found->growth_m()), found->growth_sigma_m);
   const Eigen::Vector3d shift_m = shifts ? found->shift_m() : Eigen::Vector3d::Zero();
   const double growth_m = grows ? found->growth_m() : 0;
   if (!shifts && !grows) return false;
-  if (moved_on_the_way(outlines, std::max(shift_m.norm(), std::abs(growth_m)))) return false;
+  const bool is_first = placement.shift_m.isZero(0) && placement.growth == 0;
+  if (is_first && moved_on_the_way(outlines, std::max(shift_m.norm(), std::abs(growth_m)))) {
+    return false;
+  }
 
   const double factor = 1 + growth_m / outlines.radius_m();
   const Eigen::Vector3d middle = core::bounds_of(placement.mesh).center().cast<double>();

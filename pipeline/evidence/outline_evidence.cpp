@@ -17,7 +17,6 @@
 namespace sheen::pipeline {
 namespace {
 
-constexpr std::size_t kMostOutlineViews = 24;
 constexpr int kColourPixels = 3000;  // from which a view's colours are learnt
 constexpr double kReach = 0.12;      // of the object's radius: how far off an outline may be
 constexpr double kLeastReach_px = 6, kMostReach_px = 40;
@@ -82,8 +81,8 @@ System system_of(const View& view, double scale_px,
 
 }  // namespace
 
-OutlineEvidence::OutlineEvidence(const core::Mesh& mesh, std::size_t spacing)
-    : contours_(mesh), views_(kMostOutlineViews, spacing) {
+OutlineEvidence::OutlineEvidence(const core::Mesh& mesh, std::size_t most, std::size_t spacing)
+    : contours_(mesh), views_(most, spacing) {
   radius_m_ = contours_.bounds().diagonal().norm() / 2;
 }
 

@@ -22,9 +22,9 @@ namespace sheen::pipeline {
 /// on, and a mesh of another shape, or turned, cannot be placed so that it fits.
 class OutlineEvidence {
  public:
-  /// `mesh` must outlive this. Of the frames that come every `spacing`-th is looked at, and of many
-  /// fewer.
-  explicit OutlineEvidence(const core::Mesh& mesh, std::size_t spacing = 4);
+  /// `mesh` must outlive this. Of the frames that come every `spacing`-th is looked at, and fewer
+  /// than `most` are kept.
+  explicit OutlineEvidence(const core::Mesh& mesh, std::size_t most = 24, std::size_t spacing = 4);
 
   /// `image` is CV_8UC3, BGR.
   void look_at(int frame_index, const cv::Mat& image, const core::CameraModel& camera,
