@@ -164,8 +164,8 @@ TEST(RefineMesh, MendsTheRealBoxByDefault) {
   EXPECT_GT(run.json()["held_out"]["psnr"].get<double>(), 25.2);
 }
 
-// The session puts the object 1 mm beside its place. Held-out frames: 33.3 dB there, 35.5 put right;
-// half of that gain is asked for.
+// The session puts the object 1 mm beside its place. Held-out frames: 33.3 dB there, 35.5 put
+// right; half of that gain is asked for.
 class RefineMeshOfCopy : public CopiedSession {};
 TEST_F(RefineMeshOfCopy, PutsAMeshBesideItsPlaceRightAndSaysSo) {
   auto session = nlohmann::json::parse(read_file(session_ / "session.json"));
@@ -183,7 +183,8 @@ TEST_F(RefineMeshOfCopy, PutsAMeshBesideItsPlaceRightAndSaysSo) {
   EXPECT_TRUE(left.json()["mesh_placement"].is_null());
   EXPECT_TRUE(left.json()["findings"].empty());
   const auto said = placed.json();
-  // The mesh's frame is turned against the board's; the way is as long. A quarter is noise of edges.
+  // The mesh's frame is turned against the board's; the way is as long. A quarter is noise of
+  // edges.
   double shift2_mm2 = 0;
   for (const double mm : said["mesh_placement"]["shift_mm"]) shift2_mm2 += mm * mm;
   EXPECT_NEAR(std::sqrt(shift2_mm2), 1, 0.35);
