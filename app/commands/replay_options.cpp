@@ -192,8 +192,7 @@ void add_replay_options(Command command, ReplayOptions& options) {
       "vertices where the mesh is much coarser than the texels");
   command
       .switch_on(
-          "--no-refine-mesh", [&fit] { fit.refine_mesh = false; },
-          "Leave the mesh where it is")
+          "--no-refine-mesh", [&fit] { fit.refine_mesh = false; }, "Leave the mesh where it is")
       .excludes(refine_mesh);
   command
       .option("--write-mesh", options.mesh_output,
