@@ -49,7 +49,7 @@ bool moved_on_the_way(const OutlineEvidence& outlines, double misplaced_m) {
 /// no matter of the mesh.
 bool move(const OutlineEvidence& outlines, MeshPlacement& placement) {
   const auto found = outlines.misplacement();
-  if (!found) return false;
+  if (!found || outlines.is_another_shape(*found)) return false;
   const bool shifts = !placement.shift_m.isZero(0) ||
                       is_clear(outlines, found->shift_m().norm(), found->shift_sigma_m);
   const bool grows = placement.growth != 0 ||

@@ -193,6 +193,10 @@ double OutlineEvidence::agreement(const Misplacement& placed) const {
   return *quartile;
 }
 
+bool OutlineEvidence::is_another_shape(const Misplacement& placed) const {
+  return agreement(placed) < kLeastAgreement;
+}
+
 std::optional<OutlineEvidence::Jump> OutlineEvidence::jump() const {
   std::vector<const View*> views;
   for (const View& view : views_.items()) {
@@ -274,7 +278,7 @@ std::vector<Finding> OutlineEvidence::findings() const {
            size_m * scale > kMisplaced_px && size_m > kSigmas * sigma_m;
   };
   const auto placed = misplacement();
-  if (placed && agreement(*placed) < kLeastAgreement) {
+  if (placed && is_another_shape(*placed)) {
     findings.push_back(
         {"mesh-mismatch",
          "the object's outline in the images is not its mesh's: the mesh is turned (is y up in "

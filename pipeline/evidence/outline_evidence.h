@@ -63,6 +63,8 @@ class OutlineEvidence {
   /// Share of the mesh's outline, placed so, along which the image has one, too: of the view at the
   /// upper quartile, so that half of the views may be disturbed.
   [[nodiscard]] double agreement(const Misplacement& placed) const;
+  /// Too little of it: the mesh is turned, or another object's, and no placement is to be believed.
+  [[nodiscard]] bool is_another_shape(const Misplacement& placed) const;
 
   /// A shift that begins with one frame.
   struct Jump {

@@ -100,6 +100,16 @@ TEST_F(PlaceMesh, AnObjectThatMovedIsInNoPlace) {
                      })));
 }
 
+// A flat disc instead of a ball: no place and no size has its outline in all views.
+TEST_F(PlaceMesh, AnotherShapeIsLeftWhereItIs) {
+  core::Mesh disc = ball_;
+  for (Eigen::Vector3f& position : disc.positions) {
+    position =
+        Eigen::Vector3f(1.2f * position.x(), 1.2f * position.y(), 0.1f * position.z() + 0.04f);
+  }
+  EXPECT_FALSE(place(disc, images()));
+}
+
 TEST_F(PlaceMesh, IsTheSameOnAnyNumberOfThreads) {
   const core::Mesh given = moved(ball_, 1.02, {0.001, 0, 0});
   const auto taken = images();
