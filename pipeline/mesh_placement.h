@@ -30,8 +30,9 @@ inline constexpr std::string_view kIsPutRight = "the light field is fitted to th
 
 /// Places `mesh` by the object's outlines in the images, where that is clearly another place or
 /// size and where its print agrees better there: the difference of views that are left out to the
-/// mean picture of the others falls by fitting::heights::kClearFall. Nothing where it stays as it
-/// is.
+/// mean picture of the others falls by fitting::heights::kClearFall. A mesh that is surely of
+/// another size is placed also where that difference hardly changes. Nothing where the mesh stays:
+/// none of this, outlines of another shape, an object that moved, or fewer than six views.
 std::optional<MeshPlacement> place_mesh(const core::Mesh& mesh,
                                         const std::vector<PosedImage>& images, int threads,
                                         ProgressSink& sink);

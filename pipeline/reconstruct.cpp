@@ -10,6 +10,7 @@
 #include "pipeline/check_seen.h"
 #include "pipeline/evidence/capture_evidence.h"
 #include "pipeline/frame_loop.h"
+#include "pipeline/mesh_stills.h"
 #include "pipeline/observation_replay.h"
 #include "pipeline/patch_mesh.h"
 #include "pipeline/session_board.h"

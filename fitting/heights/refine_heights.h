@@ -33,8 +33,8 @@ enum class Outlines { stay, may_move };
 /// The residual must fall by this part for heights to be accepted.
 inline constexpr double kLeastFall = 0.015;
 
-/// Fall of the residual for which outlines are let go. What gloss and poses make of right meshes
-/// stays below a third of it.
+/// Fall of the residual for which outlines are let go, or the mesh is moved as a whole. What gloss
+/// and poses make of right meshes stays below a third of it.
 inline constexpr double kClearFall = 0.025;
 
 /// Estimates heights from `views` and accepts them when the residual on `check_views`, which have

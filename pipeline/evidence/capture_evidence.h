@@ -37,7 +37,7 @@ class CaptureEvidence {
   void look_at(const capture::Frame& frame, const Eigen::Isometry3d& camera_from_board,
                const core::Observation& observation);
 
-  /// What was found about the mesh and put right before the first frame.
+  /// What place_mesh has found about the mesh as it was given; told where outlines are.
   void note(Finding misplaced) { misplaced_ = std::move(misplaced); }
 
   /// What can be said so far of a recording that goes on.
